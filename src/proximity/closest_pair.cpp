@@ -9,9 +9,12 @@
 namespace blum::detail {
 namespace {
 
-/// One thread first makes this number of descents, each from the closest pair of boxes down to primitives. Then all
-/// other pairs of boxes are searched in parallel.
-constexpr std::size_t dives = 64;
+/// The search first makes this number of descents, each from the closest pair of boxes down to primitives.
+constexpr std::size_t dives = 8;
+/// Then one thread continues for this number of steps, which is enough for most searches. Only longer searches use all
+/// threads, because starting them takes tens of microseconds. A thread does this number of steps between two looks at
+/// the context.
+constexpr std::size_t steps_alone = 4096;
 constexpr std::size_t parts_of_two = 64;
 constexpr std::size_t blocks_per_part = 16;
 constexpr std::size_t parts_of_first_round = 4;
@@ -41,6 +44,14 @@ class PartSearch {
       best_.offer(objects_->compare(i, j));
     }
     return limit();
+  }
+
+  /// Compares primitives of two different objects. If a pair at distance 0 is known, only earlier primitives of the
+  /// first object may still change the result.
+  OrientedBvh::Wanted see(std::uint32_t i, std::uint32_t j) {
+    const double within = look_at(i, j);
+    const bool is_zero = best_.limit == 0 && best_.pair;
+    return {within, 0xffffffffU, is_zero ? best_.pair->first : 0xffffffffU};
   }
 
  private:
@@ -79,14 +90,18 @@ class ClosestPairSearch {
     const OrientedBvh& a = objects_.a().bvh();
     const OrientedBvh& b = objects_.b().bvh();
     PartSearch search = part();
-    const auto see = [&](std::uint32_t i, std::uint32_t j, double) { return search.look_at(i, j); };
-    const auto left = a.dive_to_near_pairs(b, objects_.place(), search.limit(), dives, see);
+    const auto see = [&](std::uint32_t i, std::uint32_t j, double) { return search.see(i, j); };
+    auto left = a.dive_to_near_pairs(b, objects_.place(), search.limit(), dives, see);
+    left = a.visit_some_near_pairs(left, b, objects_.place(), search.limit(), steps_alone, see);
     take(search);
     const std::size_t size = std::max<std::size_t>(left.size() / parts_of_two, 1);
     search_in_rounds((left.size() + size - 1) / size, [&](std::size_t k, PartSearch& of_part) {
-      const auto visit = [&](std::uint32_t i, std::uint32_t j, double) { return of_part.look_at(i, j); };
-      for (std::size_t n = k * size; n < std::min((k + 1) * size, left.size()); ++n) {
-        a.for_each_near_pair(left[n], b, objects_.place(), of_part.limit(), visit);
+      const auto visit = [&](std::uint32_t i, std::uint32_t j, double) { return of_part.see(i, j); };
+      const auto from = left.begin() + static_cast<std::ptrdiff_t>(k * size);
+      const auto count = static_cast<std::ptrdiff_t>(std::min(size, left.size() - k * size));
+      std::vector<OrientedBvh::NodePair> nodes(from, from + count);
+      while (!nodes.empty() && !candidates_.look()) {
+        nodes = a.visit_some_near_pairs(nodes, b, objects_.place(), of_part.limit(), steps_alone, visit);
       }
     });
   }

@@ -133,9 +133,11 @@ std::array<std::uint32_t, 3> SceneObject::vertices(std::uint32_t primitive) cons
   return primitive_vertices(mesh_, primitive);
 }
 
-std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive) const {
+std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive, const RigidTransform& place) const {
   const auto [a, b, c] = vertices(primitive);
-  return {position(a), position(b), position(c)};
+  const std::vector<Vec3d>& v = mesh_.vertices;
+  if (place == RigidTransform{}) return {v[a], v[b], v[c]};
+  return {place(v[a]), place(v[b]), place(v[c])};
 }
 
 std::vector<Vec3d> SceneObject::positions(std::span<const Vec3d> vertices, const RigidTransform& place) {

@@ -40,7 +40,9 @@ class SceneObject {
   /// Returns the vertices of a primitive. Those of a segment or point are repeated.
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
   /// Returns the positions of a primitive's vertices in the scene.
-  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const { return corners(primitive, place_); }
+  /// Returns the positions of a primitive's vertices with the object at another place.
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive, const RigidTransform& place) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   /// Returns the positions of all vertices in the scene.
   [[nodiscard]] std::vector<Vec3d> positions() const { return positions(mesh_.vertices, place_); }
@@ -50,10 +52,6 @@ class SceneObject {
   [[nodiscard]] std::vector<std::uint32_t> clusters() const;
 
  private:
-  [[nodiscard]] Vec3d position(std::uint32_t vertex) const {
-    return is_placed_ ? place_(mesh_.vertices[vertex]) : mesh_.vertices[vertex];
-  }
-
   TriangleMesh mesh_;
   ObjectOptions options_;
   RigidTransform place_;

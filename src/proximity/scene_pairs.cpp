@@ -20,18 +20,11 @@ namespace {
 
 constexpr std::size_t blocks_per_range = 16;
 
-/// Returns a bound on the coordinates that occur in computations with an object.
-double largest_coordinate(const SceneObject& object) {
-  return object.bounds().largest_coordinate() + object.bvh().bounds().largest_coordinate() +
-         length(object.place().translation);
-}
-
-/// Gaps of boxes are computed in the hierarchies' coordinates, but distances from rounded positions in the scene.
-/// Returns a bound on the difference that rounding in the transforms of both objects causes.
-double position_slack(const SceneObject& a, const SceneObject& b) {
-  constexpr double rounding = 1e-14;
-  const double error = a.place().rotation_error() + b.place().rotation_error();
-  return (rounding + 8 * error) * (largest_coordinate(a) + largest_coordinate(b));
+/// Returns a bound on the coordinates that occur in computations with an object at a place.
+double largest_coordinate(const SceneObject& object, const RigidTransform& place) {
+  // A transformed point is at most sqrt(3) times as far from the origin as the largest coordinate, plus the
+  // translation.
+  return 3 * object.bvh().bounds().largest_coordinate() + 2 * length(place.translation);
 }
 
 auto key(const PrimitivePair& pair) {
@@ -68,6 +61,12 @@ void Closest::offer(const PrimitivePair& other) {
   limit = other.between.distance;
 }
 
+double position_slack(const SceneObject& a, const SceneObject& b, const RigidTransform& place_of_b) {
+  constexpr double rounding = 1e-14;
+  const double error = a.place().rotation_error() + place_of_b.rotation_error();
+  return (rounding + 8 * error) * (largest_coordinate(a, a.place()) + largest_coordinate(b, place_of_b));
+}
+
 double box_gap(const Box3& a, const Box3& b) {
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -98,7 +97,7 @@ ObjectPair::ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, co
     : first_(first), second_(second), a_(&a), b_(&b) {
   // Without transforms, the positions in the scene are those in the hierarchies.
   const bool is_placed = !(a.place() == RigidTransform{} && b.place() == RigidTransform{});
-  if (is_placed) slack_ = position_slack(a, b);
+  if (is_placed) slack_ = position_slack(a, b, b.place());
   if (is_self()) clusters_ = a.clusters();
   if (!(a.place() == b.place())) place_ = a.place().inverse() * b.place();
 }
@@ -321,9 +320,16 @@ struct FoundPairs {
 
 class NearSearch {
  public:
-  NearSearch(const ObjectPair& objects, double distance, Neighbours neighbours, std::atomic<std::size_t>& count,
-             CandidateLimit& candidates)
-      : objects_(objects), distance_(distance), neighbours_(neighbours), count_(count), candidates_(candidates) {}
+  /// @param most   the search stops when `count` exceeds this number.
+  /// @param count  number of pairs of all searches so far.
+  NearSearch(const ObjectPair& objects, double distance, Neighbours neighbours, std::size_t most,
+             std::atomic<std::size_t>& count, CandidateLimit& candidates)
+      : objects_(objects),
+        distance_(distance),
+        neighbours_(neighbours),
+        most_(most),
+        count_(count),
+        candidates_(candidates) {}
 
   void look_at(std::size_t block, FoundPairs& found) const {
     if (found.is_stopped) return;
@@ -342,7 +348,7 @@ class NearSearch {
 
  private:
   void test(std::uint32_t i, std::uint32_t j, FoundPairs& found) const {
-    found.is_stopped = candidates_.stops(++found.report.candidates) || count_ > most_close_pairs;
+    found.is_stopped = candidates_.stops(++found.report.candidates) || count_ > most_;
     if (found.is_stopped) return;
     if (objects_.is_self() && objects_.are_neighbours(i, j)) {
       if (neighbours_ == Neighbours::folded) test_fold(i, j, found);
@@ -366,6 +372,7 @@ class NearSearch {
   const ObjectPair& objects_;
   double distance_;
   Neighbours neighbours_;
+  std::size_t most_;
   std::atomic<std::size_t>& count_;
   CandidateLimit& candidates_;
 };
@@ -378,15 +385,19 @@ bool has_flat_primitives(const SceneObject& object) {
   return false;
 }
 
-/// Adds the collisions of an object with itself. All primitives must be triangles with an area.
-/// find_self_intersections() also tests neighbours.
-void add_self_intersections(const ObjectPair& objects, const Context& context, ProximityPairs& out) {
+/// Returns the collisions of an object with itself. All primitives must be triangles with an area. Neighbours are also
+/// tested.
+SelfIntersections self_intersections(const ObjectPair& objects, std::size_t limit, const Context& context) {
   const SceneObject& object = objects.a();
   const std::vector<Vec3d> positions = object.positions();
   MeshView mesh = object.mesh();
   mesh.vertices = positions;
-  const SelfIntersections found =
-      find_self_intersections(mesh, object.bvh().order(), objects.clusters(), most_close_pairs, context);
+  return find_self_intersections(mesh, object.bvh().order(), objects.clusters(), limit, context);
+}
+
+/// Adds the collisions of an object with itself. All primitives must be triangles with an area.
+void add_self_intersections(const ObjectPair& objects, const Context& context, ProximityPairs& out) {
+  const SelfIntersections found = self_intersections(objects, most_close_pairs, context);
   if (!found.complete) check_count(most_close_pairs + 1);
   for (const TrianglePair& pair : found.pairs)
     out.pairs.push_back(objects.compare(pair.first.value, pair.second.value));
@@ -394,7 +405,28 @@ void add_self_intersections(const ObjectPair& objects, const Context& context, P
   out.report.exact_tests += found.pairs.size();
 }
 
+/// Searches all blocks of the first object. Returns the results of each range of blocks.
+std::vector<FoundPairs> search_blocks(const ObjectPair& objects, const NearSearch& search, const Context& context) {
+  const std::size_t blocks = objects.a().bvh().block_count();
+  std::vector<FoundPairs> parts((blocks + blocks_per_range - 1) / blocks_per_range);
+  parallel_for(context, blocks, blocks_per_range, "close pairs", [&](const WorkRange& range) {
+    for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
+  });
+  return parts;
+}
+
 }  // namespace
+
+bool meets_itself(const ObjectPair& objects, const Context& context) {
+  if (!has_flat_primitives(objects.a())) return !self_intersections(objects, 0, context).complete;
+  check_neighbours(objects);
+  std::atomic<std::size_t> count = 0;
+  CandidateLimit candidates(context);
+  const NearSearch search(objects, 0, Neighbours::folded, 0, count, candidates);
+  static_cast<void>(search_blocks(objects, search, context));
+  if (count == 0) candidates.check();
+  return count > 0;
+}
 
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out) {
@@ -408,12 +440,8 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
       continue;
     }
     if (objects.is_self()) check_neighbours(objects);
-    const NearSearch search(objects, distance, neighbours, count, candidates);
-    const std::size_t blocks = objects.a().bvh().block_count();
-    std::vector<FoundPairs> parts((blocks + blocks_per_range - 1) / blocks_per_range);
-    parallel_for(context, blocks, blocks_per_range, "close pairs", [&](const WorkRange& range) {
-      for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
-    });
+    const NearSearch search(objects, distance, neighbours, most_close_pairs, count, candidates);
+    std::vector<FoundPairs> parts = search_blocks(objects, search, context);
     candidates.check();  // parts that stopped are incomplete
     check_count(count);
     for (FoundPairs& part : parts) {

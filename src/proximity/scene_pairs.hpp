@@ -33,6 +33,11 @@ struct Closest {
 /// Returns the distance of two boxes, reduced by a bound on rounding errors.
 [[nodiscard]] double box_gap(const Box3& a, const Box3& b);
 
+/// Gaps of boxes are computed in the hierarchies' coordinates, but distances from rounded positions in the scene.
+/// Returns a bound on the difference that rounding in the transforms of both objects causes.
+/// @param place_of_b  is used instead of the place of the second object.
+[[nodiscard]] double position_slack(const SceneObject& a, const SceneObject& b, const RigidTransform& place_of_b);
+
 [[nodiscard]] PrimitivePair exchanged(const PrimitivePair& pair);
 
 /// Adds counts, but not times.
@@ -138,15 +143,15 @@ class CandidateLimit {
     return is_stopped_ || (count % between_looks == 0 && look());
   }
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+  /// Returns true if the search must stop, as stops(), for parts of a search without candidates.
+  [[nodiscard]] bool look() {
+    if (context_->cancel.stop_requested() || total_ > most_candidates) is_stopped_ = true;
+    return is_stopped_;
+  }
   /// @throws Cancelled; InvalidMesh if there were too many candidates.
   void check() const;
 
  private:
-  bool look() {
-    if (context_->cancel.stop_requested() || total_ > most_candidates) is_stopped_ = true;
-    return is_stopped_;
-  }
-
   const Context* context_;
   std::atomic<std::size_t> total_ = 0;
   std::atomic<bool> is_stopped_ = false;
@@ -161,6 +166,10 @@ void check_count(std::size_t pairs);
 /// Adds all pairs of primitives that are at most a distance apart.
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out);
+
+/// Returns true if near_pairs() with Neighbours::folded would find a pair at distance 0. Stops at the first pair.
+/// @param objects  a pair of an object and itself.
+[[nodiscard]] bool meets_itself(const ObjectPair& objects, const Context& context);
 
 /// Rejects an object on which a query would otherwise fail after a minute.
 /// @param objects  a pair of an object and itself.

@@ -19,19 +19,22 @@ namespace blum {
 /// surface. It finds pairs of primitives of two meshes that may be close. The hierarchy for closest points and rays is
 /// Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the points of the mesh.
 ///
-/// All queries may run on many threads at once. Only dive_to_near_pairs() allocates memory. Every pair whose distance
-/// is within the limit is visited. Pairs that are farther apart may be visited, too. The hierarchy determines these
-/// additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3 microseconds per primitive, and
-/// 150 bytes per primitive.
+/// All queries may run on many threads at once. Only the queries that return pairs of nodes allocate memory. Every pair
+/// whose distance is within the limit is visited. Pairs that are farther apart may be visited, too. The hierarchy
+/// determines these additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3 microseconds
+/// per primitive, and 150 bytes per primitive.
 class OrientedBvh {
  public:
   /// Limits on the pairs that the rest of a search visits. A visitor returns them.
   struct Wanted {
     double limit;                           ///< largest distance of a pair; if it is negative, the search ends
     std::uint32_t last_there = 0xffffffff;  ///< primitives of the other hierarchy with a larger index are not visited
+    std::uint32_t last_here = 0xffffffff;   ///< likewise, primitives of this hierarchy
 
     Wanted(double limit_) : limit(limit_) {}  // NOLINT(google-explicit-constructor): mostly a distance is all
-    Wanted(double limit_, std::uint32_t last) : limit(limit_), last_there(last) {}
+    Wanted(double limit_, std::uint32_t last_there_) : limit(limit_), last_there(last_there_) {}
+    Wanted(double limit_, std::uint32_t last_there_, std::uint32_t last_here_)
+        : limit(limit_), last_there(last_there_), last_here(last_here_) {}
   };
 
   /// Visitor: a function that is called with a primitive of this hierarchy, a primitive of the other hierarchy, and a
@@ -71,7 +74,7 @@ class OrientedBvh {
     [[nodiscard]] bool is_leaf() const { return level < 0; }
   };
   /// Node of this hierarchy (`here`), node of another (`there`), and a lower bound on their squared distance, up to
-  /// rounding.
+  /// rounding. If their boxes overlap, it is minus the square of their overlap.
   struct NodePair {
     double squared_gap = 0;
     Node here, there;
@@ -82,9 +85,15 @@ class OrientedBvh {
   /// @return  the remaining pairs of nodes, closest first. Threads can share them.
   [[nodiscard]] std::vector<NodePair> dive_to_near_pairs(const OrientedBvh& other, const RigidTransform& place,
                                                          double limit, std::size_t dives, Visit visit) const;
-  /// Works as for_each_near_pair(), but only for the primitives below a pair of nodes.
-  void for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place, double limit,
-                          Visit visit) const;
+  /// Works as for_each_near_pair(), but only for the primitives below pairs of nodes, and ends after `steps` steps. A
+  /// step replaces a node by its children, or compares the primitives of two nodes. It takes up to a microsecond,
+  /// without the calls of `visit`.
+  /// @return the remaining pairs of nodes; empty if the search is complete.
+  [[nodiscard]] std::vector<NodePair> visit_some_near_pairs(std::span<const NodePair> nodes, const OrientedBvh& other,
+                                                            const RigidTransform& place, double limit,
+                                                            std::size_t steps, Visit visit) const;
+  /// Returns the pair of the whole hierarchies.
+  [[nodiscard]] NodePair whole(const OrientedBvh& other) const;
 
   /// Returns the number of blocks. A block is a group of up to eight primitives. Threads can share a loop over blocks.
   [[nodiscard]] std::size_t block_count() const;

@@ -51,7 +51,9 @@ struct alignas(64) OrientedBlock {
   }
 };
 
-/// Computes lower bounds of the squared distances between eight boxes and another box.
+/// Computes lower bounds of the squared distances between eight boxes and another box. Gaps are measured along the axes
+/// of both boxes, and along the line through both centers. If no axis has a gap, the result is minus the square of the
+/// smallest overlap along the axes of both boxes.
 void squared_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]);
 
 /// Triangle and its unit normal. The normal is 0 if the triangle is too flat.
@@ -100,5 +102,9 @@ void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low
 /// Computes lower bounds of the squared distances between eight triangles and another one. Gaps are measured along the
 /// coordinate axes, along both normals, and along the line through both middles.
 void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]);
+
+/// Computes lower bounds of the squared distances between eight triangles and a box. Gaps are measured along the axes
+/// of the box.
+void squared_gaps(const FlatTriangleBlock& block, const OrientedBox& box, double (&out)[lanes]);
 
 }  // namespace blum

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <tuple>
@@ -151,7 +152,9 @@ using PendingPairs = InlineList<NodePair, 256>;
 /// Returns true if `b` must be taken before `a`. The pair with the smaller gap comes first. If gaps are equal (for
 /// example 0, for overlapping boxes), the pair at the lower level comes first.
 bool comes_later(const NodePair& a, const NodePair& b) {
-  if (a.squared_gap != b.squared_gap) return a.squared_gap > b.squared_gap;
+  const double of_a = std::max(a.squared_gap, 0.0);
+  const double of_b = std::max(b.squared_gap, 0.0);
+  if (of_a != of_b) return of_a > of_b;
   return a.here.level + a.there.level > b.here.level + b.there.level;
 }
 
@@ -363,11 +366,16 @@ class PairSearch {
 
   void run(const NodeRef& here, const NodeRef& there) { run({0, here, there}); }
   void run(const NodePair& first) {
+    std::size_t steps = std::numeric_limits<std::size_t>::max();
+    run(first, steps);
+  }
+  /// @param steps  number of steps after which the search ends; reduced by those that were done. See pending().
+  void run(const NodePair& first, std::size_t& steps) {
     pending_.push_back(first);
-    while (!pending_.empty()) {
+    for (; !pending_.empty() && steps > 0; --steps) {
       const NodePair pair = pending_.pop_back();
       const double most = squared_limit(limit_, slack_);
-      if (!(pair.squared_gap <= most)) continue;
+      if (!(pair.squared_gap <= most) || here_.first_of(pair.here) > last_here_) continue;
       if (pair.here.is_leaf() && pair.there.is_leaf()) {
         compare_leaves(pair.here.index, pair.there.index);
       } else {
@@ -375,6 +383,9 @@ class PairSearch {
       }
     }
   }
+  /// Pairs that a search which has ended early did not look at.
+  [[nodiscard]] std::span<const NodePair> pending() const { return pending_.span(); }
+  [[nodiscard]] bool is_over() const { return !(limit_ >= 0); }
 
   /// Descends `times` times from the closest remaining pair of nodes to a pair of primitives, always to the closest
   /// children.
@@ -436,7 +447,7 @@ class PairSearch {
       // A node of level k contains 8^(k + 1) blocks.
       const bool is_early = !is_here && ((static_cast<std::size_t>(child.index) + 1)
                                          << (3 * static_cast<unsigned>(child.level + 1))) <= first_there_;
-      if (is_early || (!is_here && there_.first_of(child) > last_there_)) continue;
+      if (is_early || (is_here ? here_.first_of(child) > last_here_ : there_.first_of(child) > last_there_)) continue;
       push_sorted(pending_, bottom, {gaps[lane], is_here ? child : pair.here, is_here ? pair.there : child});
     }
   }
@@ -445,13 +456,24 @@ class PairSearch {
     const std::size_t rows = there_.lanes_of(there);
     const std::size_t columns = here_.lanes_of(here);
     double most = squared_limit(limit_, slack_);
+    // Most primitives of one leaf are far from the box of the other leaf.
+    alignas(64) double row_gaps[lanes];
+    squared_gaps(there_.leaves[there], here_seen_from_there({static_cast<std::uint32_t>(here), -1}), row_gaps);
+    alignas(64) double column_gaps[lanes];
+    squared_gaps(here_.leaves[here], there_seen_from_here({static_cast<std::uint32_t>(there), -1}), column_gaps);
+    unsigned open = 0;
+    for (std::size_t column = 0; column < columns; ++column) {
+      const bool is_open = column_gaps[column] <= most && here_.order[here * lanes + column] <= last_here_;
+      open |= static_cast<unsigned>(is_open) << column;
+    }
+    if (open == 0) return;
     struct Candidate {
       double squared_gap;
       std::uint8_t row, column;
     };
     InlineList<Candidate, lanes * lanes> candidates;
     for (std::size_t row = 0; row < rows; ++row) {
-      if (there_.order[there * lanes + row] > last_there_) continue;
+      if (!(row_gaps[row] <= most) || there_.order[there * lanes + row] > last_there_) continue;
       FlatTriangle triangle = there_.leaves[there].triangle(row);
       if (is_placed_) {
         for (Vec3d& corner : triangle.corners) corner = place_(corner);
@@ -460,7 +482,8 @@ class PairSearch {
       alignas(64) double gaps[lanes];
       squared_gaps(here_.leaves[here], triangle, gaps);
       for (std::size_t column = 0; column < columns; ++column) {
-        if (!(gaps[column] <= most) || (is_self_ && here == there && column <= row)) continue;
+        if (!(gaps[column] <= most) || (open >> column & 1U) == 0 || (is_self_ && here == there && column <= row))
+          continue;
         candidates.push_back({gaps[column], static_cast<std::uint8_t>(row), static_cast<std::uint8_t>(column)});
       }
     }
@@ -470,8 +493,9 @@ class PairSearch {
       if (!(one.squared_gap <= most)) return;
       const std::uint32_t first = here_.order[here * lanes + one.column];
       const std::uint32_t second = there_.order[there * lanes + one.row];
-      if (second > last_there_) continue;
+      if (first > last_here_ || second > last_there_) continue;
       const OrientedBvh::Wanted wanted = visit_(first, second, std::max(std::sqrt(one.squared_gap) - slack_, 0.0));
+      last_here_ = std::min(last_here_, wanted.last_here);
       last_there_ = std::min(last_there_, wanted.last_there);
       if (wanted.limit < limit_) {
         limit_ = wanted.limit;
@@ -487,6 +511,7 @@ class PairSearch {
   bool is_placed_;
   double slack_;
   double limit_;
+  std::uint32_t last_here_ = 0xffffffffU;
   std::uint32_t last_there_ = 0xffffffffU;
   std::size_t first_there_ = 0;
   bool is_self_ = false;
@@ -507,9 +532,21 @@ std::vector<OrientedBvh::NodePair> OrientedBvh::dive_to_near_pairs(const Oriente
   return PairSearch<Data>(*data_, *other.data_, place, limit, visit).dive(dives);
 }
 
-void OrientedBvh::for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place,
-                                     double limit, Visit visit) const {
-  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(nodes);
+std::vector<OrientedBvh::NodePair> OrientedBvh::visit_some_near_pairs(std::span<const NodePair> nodes,
+                                                                      const OrientedBvh& other,
+                                                                      const RigidTransform& place, double limit,
+                                                                      std::size_t steps, Visit visit) const {
+  PairSearch<Data> search(*data_, *other.data_, place, limit, visit);
+  std::size_t done = 0;
+  for (; done < nodes.size() && steps > 0; ++done) search.run(nodes[done], steps);
+  if (search.is_over()) return {};
+  std::vector<NodePair> left(search.pending().rbegin(), search.pending().rend());
+  left.insert(left.end(), nodes.begin() + static_cast<std::ptrdiff_t>(done), nodes.end());
+  return left;
+}
+
+OrientedBvh::NodePair OrientedBvh::whole(const OrientedBvh& other) const {
+  return {0, data_->top(), other.data_->top()};
 }
 
 void OrientedBvh::for_each_near_pair(std::size_t block, const OrientedBvh& other, const RigidTransform& place,

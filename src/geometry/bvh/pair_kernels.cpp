@@ -24,11 +24,26 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::HWY_NAMESPACE {
 namespace {
 
-/// Returns the squared gap between the intervals [-half, half] and [center - reach, center + reach].
-inline double squared_gap(double center, double half, double reach) {
-  const double gap = std::max(std::abs(center) - half - reach, 0.0);
-  return gap * gap;
+/// Returns the squared gap along a vector.
+/// @param gap     gap, multiplied by the vector's length; not negative.
+/// @param square  squared length of the vector.
+inline double squared_share(double gap, double square) {
+  // Evaluated in this order, because fourth powers of small lengths would lose digits.
+  return gap / std::max(square, 1e-280) * gap;
 }
+
+/// Gaps of two boxes along several axes.
+struct AxisGaps {
+  double squared = 0;    ///< sum of the squared gaps; overlaps count as 0
+  double most = -1e300;  ///< the largest gap, or minus the smallest overlap
+
+  /// Adds the gap between the intervals [-half, half] and [center - reach, center + reach].
+  inline void add(double center, double half, double reach) {
+    const double gap = std::abs(center) - half - reach;
+    most = std::max(most, gap);
+    squared += std::max(gap, 0.0) * std::max(gap, 0.0);
+  }
+};
 
 void squared_box_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]) {
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -36,7 +51,8 @@ void squared_box_gaps(const OrientedBlock& block, const OrientedBox& box, double
     const double y = box.center.y - block.center[1][i];
     const double z = box.center.z - block.center[2][i];
     double reach[3] = {0, 0, 0};  // half-extents of the block's box along the axes of `box`
-    double here = 0;              // sum of squared gaps along the axes of the block's box
+    double on_way = 0;            // sum of both half-extents along the line through both centers
+    AxisGaps here;                // along the axes of the block's box
     for (std::size_t k = 0; k < 3; ++k) {
       const double ax = block.axes[k][0][i], ay = block.axes[k][1][i], az = block.axes[k][2][i];
       double other = 0;
@@ -45,13 +61,21 @@ void squared_box_gaps(const OrientedBlock& block, const OrientedBox& box, double
         other += cosine * box.half[j];
         reach[j] += cosine * block.half[k][i];
       }
-      here += squared_gap(ax * x + ay * y + az * z, block.half[k][i], other);
+      const double at = ax * x + ay * y + az * z;
+      here.add(at, block.half[k][i], other);
+      on_way += std::abs(at) * block.half[k][i];
     }
-    double there = 0;
+    AxisGaps there;
     for (std::size_t j = 0; j < 3; ++j) {
-      there += squared_gap(box.axes[j].x * x + box.axes[j].y * y + box.axes[j].z * z, box.half[j], reach[j]);
+      const double at = box.axes[j].x * x + box.axes[j].y * y + box.axes[j].z * z;
+      there.add(at, box.half[j], reach[j]);
+      on_way += std::abs(at) * box.half[j];
     }
-    out[i] = std::max(here, there);
+    const double square = x * x + y * y + z * z;
+    const double between = std::max(square - on_way, 0.0);
+    const double gap = std::max(std::max(here.squared, there.squared), squared_share(between, square));
+    const double overlap = std::min(std::max(here.most, there.most), 0.0);
+    out[i] = gap > 0 ? gap : -overlap * overlap;
   }
 }
 
@@ -99,10 +123,27 @@ void squared_triangle_gaps(const FlatTriangleBlock& block, const FlatTriangle& t
     const double from_here = gap_between(least(at_p, at_q, at_r), most(at_p, at_q, at_r), level, level);
     const double between =
         std::max(least(dot(way, p), dot(way, q), dot(way, r)) - most(dot(way, a), dot(way, b), dot(way, c)), 0.0);
-    // Evaluated in this order, because fourth powers of small lengths would lose digits.
-    const double on_way = between / std::max(dot(way, way), 1e-280) * between;
+    const double on_way = squared_share(between, dot(way, way));
     out[i] = std::max(std::max(boxes[i], on_way), std::max(from_other * from_other, from_here * from_here));
   }
+}
+
+void squared_triangle_box_gaps(const FlatTriangleBlock& block, const OrientedBox& box, double (&out)[lanes]) {
+  alignas(64) double sum[lanes] = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d axis = box.axes[k];
+    const double middle = dot(axis, box.center);
+    const double low = middle - box.half[k];
+    const double high = middle + box.half[k];
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const double a = axis.x * block.corner[0][0][i] + axis.y * block.corner[0][1][i] + axis.z * block.corner[0][2][i];
+      const double b = axis.x * block.corner[1][0][i] + axis.y * block.corner[1][1][i] + axis.z * block.corner[1][2][i];
+      const double c = axis.x * block.corner[2][0][i] + axis.y * block.corner[2][1][i] + axis.z * block.corner[2][2][i];
+      const double gap = gap_between(least(a, b, c), most(a, b, c), low, high);
+      sum[i] += gap * gap;
+    }
+  }
+  for (std::size_t i = 0; i < lanes; ++i) out[i] = sum[i];
 }
 
 /// A triangle gets a normal only if (height / longest side)^2 exceeds this, with the height over the longest side.
@@ -194,6 +235,7 @@ namespace {
 
 BLUM_KERNEL(squared_box_gaps);
 BLUM_KERNEL(squared_triangle_gaps);
+BLUM_KERNEL(squared_triangle_box_gaps);
 BLUM_KERNEL(set_normals);
 BLUM_KERNEL(extent_along);
 BLUM_KERNEL(extent_along_axes);
@@ -206,6 +248,10 @@ void squared_gaps(const OrientedBlock& block, const OrientedBox& box, double (&o
 
 void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]) {
   best_squared_triangle_gaps(block, triangle, out);
+}
+
+void squared_gaps(const FlatTriangleBlock& block, const OrientedBox& box, double (&out)[lanes]) {
+  best_squared_triangle_box_gaps(block, box, out);
 }
 
 void set_normals(FlatTriangleBlock& block, BlockShape& out) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -155,48 +156,67 @@ struct Pair {
 
 /// Offers the closest pairs of a corner of one triangle and a point on an edge of the other.
 void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
-  double least = best.squared;
-  std::size_t corner = 3;
-  std::size_t edge = 0;
-  double at = 0;
+  // All distances are computed before they are compared, so that no computation waits for the one before.
+  std::array<double, 9> squares;
+  std::array<double, 9> places;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d w = a.corner[i] - b.corner[k];
       const double t = std::min(std::max(dot(w, b.edge[k]) * b.inverse[k], 0.0), 1.0);
-      const double squared = squared_length(w - b.edge[k] * t);
-      // Computed without branches, which would be mispredicted about half of the time.
-      const bool is_less = squared < least;
-      least = is_less ? squared : least;
-      at = is_less ? t : at;
-      corner = is_less ? i : corner;
-      edge = is_less ? k : edge;
+      squares[3 * i + k] = squared_length(w - b.edge[k] * t);
+      places[3 * i + k] = t;
     }
   }
-  if (corner == 3) return;
+  double least = best.squared;
+  std::size_t found = 9;
+  for (std::size_t n = 0; n < 9; ++n) {
+    // Without branches, which would be mispredicted about half of the time.
+    const bool is_less = squares[n] < least;
+    least = is_less ? squares[n] : least;
+    found = is_less ? n : found;
+  }
+  if (found == 9) return;
+  const std::size_t corner = found / 3;
+  const std::size_t edge = found % 3;
+  const double at = places[found];
   const Vec3d q = at >= 1 ? b.corner[(edge + 1) % 3] : b.corner[edge] + b.edge[edge] * at;
   best = {least, a.corner[corner], q, {SiteKind::vertex, static_cast<std::uint8_t>(corner)}, on_edge(edge, at)};
 }
 
 /// Offers the closest pairs of points of two edges, for edges that both contain the foot of their common perpendicular.
 void offer_edges(const Sides& a, const Sides& b, Pair& best) {
+  // Nine common perpendiculars are computed at once, so that no computation waits for a branch of another one.
+  std::array<double, 9> square;  // squared length of each product of two edges
+  std::array<double, 9> s;
+  std::array<double, 9> t;
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t l = 0; l < 3; ++l) {
       const Vec3d& u = a.edge[k];
       const Vec3d& v = b.edge[l];
       const Vec3d w = b.corner[l] - a.corner[k];
       const Vec3d n = cross(u, v);
-      const double square = squared_length(n);
+      square[3 * k + l] = squared_length(n);
       // Uses cross products. For nearly parallel edges, dot products would lose twice as many digits.
-      const double s = dot(cross(w, v), n);
-      const double t = dot(cross(w, u), n);
-      if (!(s > 0 && s < square && t > 0 && t < square)) continue;
-      const Vec3d foot = a.corner[k] + u * (s / square);
-      const double along = std::clamp(dot(foot - b.corner[l], v) * b.inverse[l], 0.0, 1.0);
-      const Vec3d other = b.corner[l] + v * along;
-      const double squared = squared_length(foot - other);
-      if (!(squared < best.squared)) continue;
-      best = {squared, foot, other, {SiteKind::edge, static_cast<std::uint8_t>(k)}, on_edge(l, along)};
+      s[3 * k + l] = dot(cross(w, v), n);
+      t[3 * k + l] = dot(cross(w, u), n);
     }
+  }
+  unsigned feet = 0;  // a bit for each pair of edges that contain both feet
+  for (std::size_t i = 0; i < 9; ++i) {
+    const bool is_inside = (s[i] > 0) & (s[i] < square[i]) & (t[i] > 0) & (t[i] < square[i]);
+    feet |= static_cast<unsigned>(is_inside) << i;
+  }
+  for (; feet != 0; feet &= feet - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(feet));
+    const std::size_t k = i / 3;
+    const std::size_t l = i % 3;
+    const Vec3d& v = b.edge[l];
+    const Vec3d foot = a.corner[k] + a.edge[k] * (s[i] / square[i]);
+    const double along = std::clamp(dot(foot - b.corner[l], v) * b.inverse[l], 0.0, 1.0);
+    const Vec3d other = b.corner[l] + v * along;
+    const double squared = squared_length(foot - other);
+    if (!(squared < best.squared)) continue;
+    best = {squared, foot, other, {SiteKind::edge, static_cast<std::uint8_t>(k)}, on_edge(l, along)};
   }
 }
 
