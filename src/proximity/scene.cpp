@@ -21,6 +21,7 @@
 #include "blum/proximity/motion.hpp"
 #include "proximity/first_search.hpp"
 #include "proximity/impact_search.hpp"
+#include "proximity/meets.hpp"
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
 #include "proximity/scene_penetration.hpp"
@@ -191,6 +192,15 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 void check_distance(const char* what, double distance) {
   if (distance >= 0) return;
   throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
+}
+
+/// Checks one of several transforms. @throws InvalidOption with its index.
+void check_nth(std::size_t k, const RigidTransform& place) {
+  try {
+    check(place);
+  } catch (const InvalidOption& error) {
+    throw InvalidOption("transforms[" + std::to_string(k) + "]: " + error.what());
+  }
 }
 
 /// Calls change(), which may reject a mesh or vertices of an object. Messages of its exceptions then begin with the
@@ -396,6 +406,27 @@ ProximityPairs ProximityScene::separation(double max_distance, const Context& co
   for (const ProximityReport& one : reports) detail::add(one, out.report);
   timer.lap("primitives");
   return out;
+}
+
+bool ProximityScene::meets(ObjectId first, ObjectId second, const Context& context) const {
+  return detail::meet(data_->two(first, second), context);
+}
+
+bool ProximityScene::meets(const Context& context) const {
+  const std::vector<TwoObjects> pairs = data_->compared(0, context);
+  return std::any_of(pairs.begin(), pairs.end(), [&](const TwoObjects& two) { return detail::meet(two, context); });
+}
+
+std::vector<std::uint8_t> ProximityScene::meets(ObjectId first, ObjectId second,
+                                                std::span<const RigidTransform> transforms,
+                                                const Context& context) const {
+  const TwoObjects two = data_->two(first, second);
+  if (first == second) {
+    throw InvalidOption("object " + std::to_string(first.value) +
+                        " cannot meet itself at another place; add its mesh a second time");
+  }
+  for (std::size_t k = 0; k < transforms.size(); ++k) check_nth(k, transforms[k]);
+  return detail::meet_at(*two.a, *two.b, transforms, context);
 }
 
 ProximityPairs ProximityScene::closest_primitives(double max_distance, const Context& context) const {

@@ -55,6 +55,8 @@ TEST(HostileScene, RejectsAMillionEqualTrianglesAtOnce) {
     EXPECT_THROW(static_cast<void>(scene.closest_primitives()), InvalidMesh);
     EXPECT_THROW(static_cast<void>(scene.closer_than(0.5)), InvalidMesh);
     EXPECT_THROW(static_cast<void>(scene.collisions()), OutOfMemory);
+    EXPECT_TRUE(scene.meets(first, first));
+    EXPECT_FALSE(scene.meets(first, second));
   }
 }
 
