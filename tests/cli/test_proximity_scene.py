@@ -16,8 +16,8 @@ from tool import BLUM, names, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 blum = pytest.importorskip("blum")
 
-#: Queries of solids and of motions; other files test them.
-ELSEWHERE = {"signed", "penetration", "continuous"}
+#: Queries of solids and of motions, and those without pairs; other tests cover them.
+ELSEWHERE = {"signed", "penetration", "continuous", "meets"}
 
 
 def method_of(query):
@@ -175,6 +175,25 @@ def test_separation_is_reported_as_text_and_json(objects):
     assert run("proximity", "separation", *objects, "--quiet")[0] == ""
     alone = run("proximity", "separation", objects[0], "--self")[0]
     assert "torus.ply, itself" in alone and "1 object, 576 triangles\n" in alone
+
+
+@pytest.mark.parametrize(("chosen", "options"), [([0, 1], []), ([0, 2], []), ([0, 1, 2], []), ([0], ["--self"]),
+                                                 ([2], ["--self"]), ([0, 2], ["--self"])])  # fmt: skip
+def test_meets_answers_as_the_package_and_as_collide(objects, chosen, options):
+    files = [objects[k] for k in chosen]
+    wanted = scene_of(files, bool(options)).meets()
+    assert wanted is (run_json("proximity", "collide", *files, *options)["pairs"] > 0)
+    for threads in (1, 2):
+        answer = run_json("proximity", "meets", *files, *options, "--threads", threads)
+        assert answer["meets"] is wanted and answer["query"] == "meets" and answer["self"] is bool(options)
+        assert [one["file"] for one in answer["objects"]] == list(map(str, files)) and "pairs" not in answer
+    out = run("proximity", "meets", *files, *options)[0]
+    assert ("found  yes: primitives meet\n" if wanted else "found  no: no two primitives meet\n") in out
+
+
+def test_meets_writes_no_pairs(objects, tmp_path):
+    assert "--output" in run("proximity", "meets", *objects, "--output", tmp_path / "p.npz", status=2)[1]
+    assert "--self" in run("proximity", "meets", objects[0], status=2)[1]
 
 
 def test_text_lists_only_the_first_pairs(objects):

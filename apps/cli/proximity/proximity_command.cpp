@@ -13,6 +13,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   blum proximity separation arm.ply table.ply            distance and closest points
   blum proximity collide a.ply b.ply -o pairs.npz        all pairs of triangles that meet
+  blum proximity meets a.ply b.ply                       yes or no, stops at the first pair
   blum proximity penetration a.ply b.ply --json -        each connected part of the overlap of two solids
   blum proximity continuous start.ply end.ply --self     collisions between two frames
 
@@ -26,6 +27,14 @@ void run(const ProximityArguments& a, const SceneQuery& query) {
   if (a.frames) return run_frames(a, query);
   if (query.moves) return run_continuous_query(a);
   run_scene_query(a, query);
+}
+
+void add_output_options(const Command& command, const SceneQuery& query, ProximityArguments& a) {
+  add_text_option(command, "-o,--output", a.output, "FILE", std::string(query.output) + ". Default: print counts only");
+  add_text_option(command, "--limit", a.limit, "N",
+                  std::string("Write at most N pairs") + (query.takes_frames ? " (per frame)" : "") +
+                      ", the first by index, not by distance or time (penetration: the deepest first); counts include "
+                      "all pairs (default: all)");
 }
 
 void add_query(const Command& parent, const SceneQuery& query) {
@@ -49,8 +58,10 @@ void add_query(const Command& parent, const SceneQuery& query) {
         .type_name("END");
   }
   command.add_flag("--self", a->self,
-                   "Also compare each object with itself, except primitives with a common vertex. Without "
-                   "--max-distance, collide also returns those that cross or are folded onto each other");
+                   query.has_pairs
+                       ? "Also compare each object with itself, except primitives with a common vertex. Without "
+                         "--max-distance, collide also returns those that cross or are folded onto each other"
+                       : "Also compare each object with itself, as collide does");
   if (query.takes_frames) {
     command.add_flag(
         "--frames", a->frames,
@@ -68,12 +79,7 @@ void add_query(const Command& parent, const SceneQuery& query) {
   if (!query.max_distance.empty()) {
     add_text_option(command, "--max-distance", a->max_distance, "D", std::string(query.max_distance));
   }
-  add_text_option(command, "-o,--output", a->output, "FILE",
-                  std::string(query.output) + ". Default: print counts only");
-  add_text_option(command, "--limit", a->limit, "N",
-                  std::string("Write at most N pairs") + (query.takes_frames ? " (per frame)" : "") +
-                      ", the first by index, not by distance or time (penetration: the deepest first); counts include "
-                      "all pairs (default: all)");
+  if (query.has_pairs) add_output_options(command, query, *a);
   add_weld_option(command, a->weld);
   if (query.takes_culling) a->culling.add_to(command);
   if (query.takes_depth) a->penetration.add_to(command);

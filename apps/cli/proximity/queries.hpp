@@ -51,13 +51,14 @@ struct SceneFound {
   ProximityPairs pairs = {};
   std::vector<Penetration> parts = {};  ///< for the query of penetrations: one entry for each pair
   std::string_view kind = "closest";    ///< name for the pairs in the viewer
+  std::optional<bool> meets = {};       ///< the answer of a query without pairs
 };
 
 /// Query: a subcommand of `blum proximity`. To add a query, add a row in scene_queries.cpp.
 struct SceneQuery {
   std::string_view name;
   std::string_view doc;                ///< description for --help
-  std::string_view output;             ///< help text of --output
+  std::string_view output = {};        ///< help text of --output
   std::string_view method;             ///< method of ProximityScene in C++ and Python, for --help
   std::string_view examples;           ///< for --help, one per line
   std::string_view max_distance = {};  ///< help text of --max-distance; empty if the query does not take it
@@ -65,6 +66,7 @@ struct SceneQuery {
   bool takes_depth = false;  ///< true if the query takes the options of penetration
   bool takes_frames = true;
   bool has_rows = false;  ///< True if the summary has a row for each pair.
+  bool has_pairs = true;  ///< False if the answer is yes or no.
   /// True if objects move during the query. Its results are then not pairs at rest.
   bool moves = false;
   /// Runs the query. nullptr if `method` is one of pair_queries(), or if objects move.

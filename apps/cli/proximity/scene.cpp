@@ -37,6 +37,7 @@ struct Answer {
   ProximityPairs found;
   std::vector<Penetration> parts;  ///< for penetrations: one for each pair of `found`
   std::string_view kind;           ///< name of the kind of pairs
+  std::optional<bool> meets;       ///< for the query without pairs
   std::vector<std::string> names;  ///< names of the objects
   PhaseSummary spent;
   int threads = 0;
@@ -110,7 +111,21 @@ Json closest_json(const Answer& answer) {
           {"point", {to_json(pair->between.first_point), to_json(pair->between.second_point)}}};
 }
 
+/// Returns the answer of a query without pairs.
+Json yes_or_no_json(const ProximityArguments& a, const Answer& answer) {
+  return answer_json("proximity", {{"query", a.query},
+                                   {"objects", objects_json(a, answer)},
+                                   {"self", a.self},
+                                   {"meets", *answer.meets},
+                                   {"seconds", answer.spent.seconds},
+                                   {"total_seconds", answer.spent.total},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"threads", answer.threads},
+                                   {"outputs", outputs_json(a)}});
+}
+
 Json json_of(const ProximityArguments& a, const Answer& answer) {
+  if (answer.meets) return yes_or_no_json(a, answer);
   Json parts = Json::array();
   for (const Penetration& part : answer.parts) parts.push_back(penetration_json(part));
   return answer_json("proximity", {{"query", a.query},
@@ -212,6 +227,7 @@ std::string scene_text(const Answer& answer) {
 }
 
 std::string found_text(const Answer& answer, bool has_rows) {
+  if (answer.meets) return *answer.meets ? "yes: primitives meet" : "no: no two primitives meet";
   if (answer.kind == "penetration") {
     return answer.parts.empty() ? "none: no two solids overlap"
                                 : plural(answer.parts.size(), "common region", "common regions");
@@ -241,7 +257,7 @@ TextTable table_of(const ProximityArguments& a, const SceneQuery& query, const A
     table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
   }
   table.add("input", scene_text(answer));
-  if (answer.kind != "penetration")
+  if (answer.kind != "penetration" && !answer.meets)
     table.detail("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
                               count_text(answer.found.report.candidates) + " candidates in " +
                               plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
@@ -287,6 +303,7 @@ void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
   answer.found = std::move(found.pairs);
   answer.parts = std::move(found.parts);
   answer.kind = found.kind;
+  answer.meets = found.meets;
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {

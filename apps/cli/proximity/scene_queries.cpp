@@ -13,6 +13,14 @@ SceneFound ask_collide(const ProximityScene& scene, const SceneQuestion& asked, 
   return {.pairs = scene.collisions(context), .kind = "collision"};
 }
 
+SceneFound ask_meets(const ProximityScene& scene, const SceneQuestion&, const Context& context) {
+  SceneFound out{.kind = "meets"};
+  PhaseTimer timer(out.pairs.report.phases);
+  out.meets = scene.meets(context);
+  timer.lap("primitives");
+  return out;
+}
+
 SceneFound ask_penetration(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
   Penetrations found = scene.penetrations(asked.penetration, context);
   SceneFound out{.parts = std::move(found.parts), .kind = "penetration"};
@@ -62,6 +70,14 @@ constexpr std::array queries{
                .max_distance = "All pairs at most D apart, in mesh units (default 0: pairs with a common point)",
                .takes_culling = true,
                .ask = ask_collide},
+    SceneQuery{.name = "meets",
+               .doc = "Yes or no: do any two objects meet? Stops at the first pair of primitives that meet",
+               .method = "meets",
+               .examples = R"(  blum proximity meets arm.ply table.ply
+  blum proximity meets a.ply b.ply --json -)",
+               .takes_frames = false,
+               .has_pairs = false,
+               .ask = ask_meets},
     SceneQuery{.name = "penetration",
                .doc = "Common parts of solids: depth, direction, area, volume",
                .output = "Deepest point of each part and its closest surface point; the depth is a negative "
