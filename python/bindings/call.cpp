@@ -23,6 +23,9 @@ namespace {
 namespace nb = nanobind;
 
 constexpr std::chrono::milliseconds look_every{50};
+/// A brief call is stopped after this time, up to the time between two looks of the watcher.
+constexpr std::chrono::milliseconds patience{20};
+constexpr std::chrono::milliseconds watch_every{10};
 
 /// State shared by the worker and the calling thread.
 class Shared {
@@ -69,13 +72,25 @@ class Shared {
 /// Running calls, which must end before the interpreter does. While it ends, it kills every thread that waits for its
 /// lock. This ends the whole process if C++ frames are on the stack of that thread.
 class RunningCalls {
+  using Clock = std::chrono::steady_clock;
+  struct Running {
+    std::stop_source* stop;
+    std::optional<Clock::time_point> end;  ///< time at which a brief call is stopped
+  };
+
  public:
   /// Registers a call for as long as the entry exists.
   class Entry {
    public:
-    Entry(RunningCalls& all, std::stop_source& stop) : all_(&all) {
+    enum class Kind : std::uint8_t { any_time, brief };
+
+    /// @param kind  a brief call is stopped after `patience`.
+    Entry(RunningCalls& all, std::stop_source& stop, Kind kind = Kind::any_time) : all_(&all) {
+      Running call{&stop, std::nullopt};
+      if (kind == Kind::brief) call.end = Clock::now() + patience;
       const std::scoped_lock lock(all.mutex_);
-      place_ = all.stops_.insert(all.stops_.end(), &stop);
+      place_ = all.calls_.insert(all.calls_.end(), call);
+      if (kind == Kind::brief) all.wake_watcher();
     }
     ~Entry() { leave(); }
     Entry(const Entry&) = delete;
@@ -84,14 +99,14 @@ class RunningCalls {
     void leave() {
       if (all_ == nullptr) return;
       const std::scoped_lock lock(all_->mutex_);
-      all_->stops_.erase(place_);
+      all_->calls_.erase(place_);
       all_->changed_.notify_all();
       all_ = nullptr;
     }
 
    private:
     RunningCalls* all_;
-    std::list<std::stop_source*>::iterator place_;
+    std::list<Running>::iterator place_;
   };
 
   /// Returns true if this thread must not return to Python any more.
@@ -104,17 +119,46 @@ class RunningCalls {
   void end() {
     std::unique_lock lock(mutex_);
     exiting_ = std::this_thread::get_id();
-    for (std::stop_source* stop : stops_) stop->request_stop();
-    changed_.wait_for(lock, longest_end, [&] { return stops_.empty(); });
+    for (const Running& call : calls_) call.stop->request_stop();
+    changed_.wait_for(lock, longest_end, [&] { return calls_.empty(); });
   }
 
  private:
   /// A limit is needed because progress callbacks of Python may take any time.
   static constexpr std::chrono::seconds longest_end{10};
 
+  /// Makes a thread look at brief calls, until none has run for a while. The mutex must be locked.
+  void wake_watcher() {
+    is_active_ = true;
+    if (!has_watcher_) std::thread([this] { watch(); }).detach();
+    has_watcher_ = true;
+    if (std::exchange(is_idle_, false)) watcher_.notify_one();
+  }
+
+  [[noreturn]] void watch() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      if (!std::exchange(is_active_, false)) {
+        is_idle_ = true;
+        watcher_.wait(lock, [&] { return !is_idle_; });
+      }
+      watcher_.wait_for(lock, watch_every);
+      const auto now = Clock::now();
+      for (const Running& call : calls_) {
+        if (!call.end) continue;
+        is_active_ = true;
+        if (now >= *call.end) call.stop->request_stop();
+      }
+    }
+  }
+
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::list<std::stop_source*> stops_;
+  std::condition_variable watcher_;
+  bool has_watcher_ = false;
+  bool is_active_ = false;  ///< true if a brief call ran since the watcher last looked
+  bool is_idle_ = false;    ///< true if the watcher waits for the next brief call
+  std::list<Running> calls_;
   std::optional<std::thread::id> exiting_;
 };
 
@@ -202,6 +246,32 @@ void run_call(const Call& call, void (*work)(const void* subject, const Context&
   }
   if (raised) std::rethrow_exception(raised);
   if (shared.failure()) std::rethrow_exception(shared.failure());
+}
+
+bool run_brief_call(const Call& call, void (*work)(const void* subject, const Context& context), const void* subject) {
+  RunningCalls& calls = running_calls();
+  std::stop_source stop;
+  std::exception_ptr failure;
+  bool is_done = true;
+  std::optional<RunningCalls::Entry> entry;
+  {
+    const nb::gil_scoped_release release;
+    if (calls.is_over()) park();
+    entry.emplace(calls, stop, RunningCalls::Entry::Kind::brief);
+    try {
+      work(subject, {call.threads, {}, stop.get_token(), call.device});
+    } catch (const Cancelled&) {
+      is_done = false;
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    if (calls.is_over()) {
+      entry->leave();
+      park();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  return is_done;
 }
 
 }  // namespace blum::python

@@ -30,6 +30,12 @@ void run_call(const Call& call, const Work& work) {
   run_call(call, begin, std::addressof(work));
 }
 
+/// Runs work in the calling thread, without the interpreter's lock, for at most a few dozen milliseconds. Signals and
+/// progress are not handled meanwhile.
+/// @return  false if the work was stopped because it took longer.
+[[nodiscard]] bool run_brief_call(const Call& call, void (*work)(const void* subject, const Context& context),
+                                  const void* subject);
+
 /// Registers a function with Python's atexit that stops the calls of other threads when the interpreter ends. These
 /// calls never return.
 void end_calls_at_exit();
@@ -41,6 +47,22 @@ auto run(const Call& call, const Work& work) {
   std::optional<Result> result;
   run_call(call, [&](const Context& context) { result.emplace(work(context)); });
   return std::move(*result);
+}
+
+/// Runs work as run() does. Starting a thread takes longer than most queries of scenes, so the work first runs in the
+/// calling thread. Work that takes longer starts again in its own thread.
+/// @param work  must have no effect but its result; it may be called twice.
+template <class Work>
+auto run_brief(const Call& call, const Work& work) {
+  using Result = decltype(work(std::declval<const Context&>()));
+  if (!call.progress.is_none()) return run(call, work);
+  std::optional<Result> result;
+  const auto keep = [&](const Context& context) { result.emplace(work(context)); };
+  const auto begin = [](const void* subject, const Context& context) {
+    (*static_cast<const decltype(keep)*>(subject))(context);
+  };
+  if (run_brief_call(call, begin, std::addressof(keep))) return std::move(*result);
+  return run(call, work);
 }
 
 }  // namespace blum::python

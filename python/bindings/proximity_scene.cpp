@@ -27,6 +27,7 @@ namespace {
 
 /// Matrix with the rotation in its first three columns and the translation in the last one.
 using PlaceIn = In<double, nb::shape<3, 4>>;
+using PlacesIn = In<double, nb::shape<-1, 3, 4>>;
 using TrianglesOfPointsIn = In<double, nb::shape<-1, 3, 3>>;
 /// Vertices of the features of both sides, as in files.
 using Features = std::array<std::array<std::int32_t, 3>, 2>;
@@ -38,6 +39,17 @@ RigidTransform place_of(const PlaceIn& rows) {
     place.translation[row] = rows(row, 3);
   }
   return place;
+}
+
+std::vector<RigidTransform> places_of(const PlacesIn& given) {
+  std::vector<RigidTransform> out(given.shape(0));
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t k = 0; k < 3; ++k) out[n].rotation.columns[k][row] = given(n, row, k);
+      out[n].translation[row] = given(n, row, 3);
+    }
+  }
+  return out;
 }
 
 /// Pairs and the vertices of their features.
@@ -193,7 +205,7 @@ void bind_queries(nb::class_<ProximityScene>& scene) {
       "separation",
       [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, double most, int threads,
          nb::object progress) {
-        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
+        return columns_of(run_brief({threads, std::move(progress)}, [&](const Context& context) {
           ProximityPairs found;
           found.report.object_pairs = 1;
           if (const auto pair = self.separation(ObjectId(first), ObjectId(second), most, context)) {
@@ -213,6 +225,34 @@ void bind_queries(nb::class_<ProximityScene>& scene) {
         }));
       },
       nb::arg("query"), nb::arg("distance"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+void bind_meets(nb::class_<ProximityScene>& scene) {
+  scene.def(
+      "meets",
+      [](const ProximityScene& self, int threads, nb::object progress) {
+        return run({threads, std::move(progress)}, [&](const Context& context) { return self.meets(context); });
+      },
+      nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "meets_two",
+      [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, int threads, nb::object progress) {
+        return run_brief({threads, std::move(progress)}, [&](const Context& context) {
+          return self.meets(ObjectId(first), ObjectId(second), context);
+        });
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "meets_at",
+      [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const PlacesIn& given, int threads,
+         nb::object progress) {
+        const std::vector<RigidTransform> places = places_of(given);
+        return handed_over<std::uint8_t>(run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.meets(ObjectId(first), ObjectId(second), places, context);
+        }));
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("places").noconvert(), nb::arg("threads"),
+      nb::arg("progress").none());
 }
 
 nb::tuple vector_out(const Vec3d& p) {
@@ -346,6 +386,7 @@ void bind_proximity_scene(nb::module_& m) {
       nb::arg("options"));
   bind_updates(scene);
   bind_queries(scene);
+  bind_meets(scene);
   bind_solids(scene);
   bind_motions(scene);
   m.def(

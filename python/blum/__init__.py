@@ -35,12 +35,14 @@ from . import (
     _proximity,
     _proximity_results,
     _proximity_scene,
+    _rigid,
     _shapes,
     _smooth,
     _solid,
     _structs,
     _surface_map,
     _transform,
+    _triangle_distances,
     _verifier,
     _view,
     _voronoi,
@@ -71,12 +73,14 @@ from ._points import *
 from ._proximity import *
 from ._proximity_results import *
 from ._proximity_scene import *
+from ._rigid import *
 from ._shapes import *
 from ._smooth import *
 from ._solid import *
 from ._structs import *
 from ._surface_map import *
 from ._transform import *
+from ._triangle_distances import *
 from ._verifier import *
 from ._view import *
 from ._voronoi import *
@@ -107,6 +111,8 @@ __all__ += _points.__all__
 __all__ += _proximity.__all__
 __all__ += _proximity_results.__all__
 __all__ += _proximity_scene.__all__
+__all__ += _rigid.__all__
+__all__ += _triangle_distances.__all__
 __all__ += _shapes.__all__
 __all__ += _smooth.__all__
 __all__ += _solid.__all__

@@ -16,6 +16,7 @@ from ._errors import InvalidMesh, InvalidOption
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int32]
+BoolArray = npt.NDArray[np.bool_]
 PathLike = str | os.PathLike[str]
 #: Numbers of Python and NumPy.
 Integer = int | np.integer[Any]

@@ -7,30 +7,27 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import replace
 from typing import Any, TypeGuard, Unpack, cast, overload
 
 import numpy as np
 
 from . import _core
 from ._arguments import (
+    BoolArray,
     FloatArray,
-    IntArray,
     Integer,
     Real,
-    as_array,
     float_rows,
     integer,
-    matrix,
     number,
     text,
-    triple,
     truth,
 )
 from ._errors import InvalidMesh, InvalidOption
 from ._mesh import MeshLike, as_mesh, end_vertices, mesh_of_arrays
-from ._methods import ShortList, Shown
+from ._methods import ShortList
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
 from ._proximity_results import (
@@ -41,17 +38,15 @@ from ._proximity_results import (
     SceneCollisions,
     penetration_of,
 )
+from ._rigid import as_place, as_places
 from ._scene_copies import SceneObject, restored_scene
 from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
 
 __all__ = [
     "ProximityScene",
-    "TriangleDistances",
     "closest_primitives",
-    "closest_rotation",
     "collisions",
     "separation",
-    "triangle_distances",
 ]
 
 _ALL_LAYERS = 0xFFFFFFFF
@@ -145,7 +140,7 @@ class ProximityScene:
         own = as_mesh(mesh)
         options = _layers(layers, "layers"), _layers(meets, "meets"), truth(compare_self, "compare_self")
         called = text(name, "name")
-        place = _place(np.eye(4) if transform is None else transform)
+        place = as_place(np.eye(4) if transform is None else transform)
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             added: int = self._scene.add(own._arrays, *options, called, place, count, report)
@@ -226,7 +221,7 @@ class ProximityScene:
         which = _object(index, "index")
         rows = None if vertices is None else float_rows(vertices, "vertices")
         own = None if mesh is None else as_mesh(mesh)
-        place = None if transform is None else _place(transform)
+        place = None if transform is None else as_place(transform)
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             if place is not None:
@@ -316,6 +311,70 @@ class ProximityScene:
         first, second = _object(a, "a"), _object(b, "b")
         with self._alone(progress) as report:
             return ProximityPairs(*self._scene.separation(first, second, most, count, report)).closest_pair
+
+    @overload
+    def meets(
+        self, a: None = None, b: None = None, transforms: None = None, *, threads: int = 0, progress: Progress = False
+    ) -> bool: ...
+    @overload
+    def meets(
+        self, a: Integer, b: Integer, transforms: None = None, *, threads: int = 0, progress: Progress = False
+    ) -> bool: ...
+    @overload
+    def meets(
+        self, a: Integer, b: Integer, transforms: Any, *, threads: int = 0, progress: Progress = False
+    ) -> BoolArray: ...
+    def meets(
+        self,
+        a: Integer | None = None,
+        b: Integer | None = None,
+        transforms: Any = None,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> bool | BoolArray:
+        """Returns True if two objects meet, whatever their layers. The search stops at the first pair of primitives.
+
+        Only surfaces count: a solid inside another one does not meet it. If `a` and `b` are the same object, returns
+        True if :meth:`collisions` would find a pair within it. Without `a` and `b`, returns True if any compared pair
+        of objects meets.
+
+        Parameters
+        ----------
+        a, b : int, optional
+            Numbers of objects: both or neither.
+        transforms : (n, 4, 4) or (n, 3, 4) array, optional
+            Poses of `b`, as for :meth:`update`. The result is then an array of n booleans, one for each pose. The scene
+            does not change.
+        threads, progress
+            As for :func:`distance_field`.
+
+        Examples
+        --------
+        >>> import blum, numpy as np
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add(box)
+        >>> poses = np.tile(np.eye(4), (3, 1, 1))
+        >>> poses[:, 0, 3] = [0.5, 1, 1.5]
+        >>> scene.meets(a, b), scene.meets(a, b, poses).tolist()
+        (True, [True, True, False])
+        """
+        if (a is None) != (b is None):
+            raise InvalidOption("meets() takes both a and b, or neither for all pairs")
+        count = integer(threads, "threads")
+        if a is None or b is None:
+            if transforms is not None:
+                raise InvalidOption("transforms are those of b: meets() then takes both a and b")
+            with self._alone(progress) as report:
+                return bool(self._scene.meets(count, report))
+        first, second = _object(a, "a"), _object(b, "b")
+        if transforms is None:
+            with self._alone(progress) as report:
+                return bool(self._scene.meets_two(first, second, count, report))
+        places = as_places(transforms)
+        with self._alone(progress) as report:
+            found: BoolArray = self._scene.meets_at(first, second, places, count, report).view(bool)
+        return found
 
     def closest_primitives(
         self, max_distance: Real = np.inf, *, threads: int = 0, progress: Progress = False
@@ -596,17 +655,37 @@ class ProximityScene:
         assert own is not None  # The library rejects removed objects.
         self._objects[index] = replace(own, **facts)
 
-    @contextmanager
-    def _alone(self, progress: Progress = False) -> Iterator[ProgressCallback | None]:
+    def _alone(self, progress: Progress = False) -> AbstractContextManager[ProgressCallback | None]:
         """Returns a context with the library's progress callback, in which no other thread uses the scene."""
-        if self._owner == threading.get_ident():
+        return _Alone(self) if progress is False else self._alone_reporting(progress)
+
+    @contextmanager
+    def _alone_reporting(self, progress: Progress) -> Iterator[ProgressCallback | None]:
+        with _Alone(self), reporting(progress) as report:
+            yield report
+
+
+class _Alone(AbstractContextManager[None]):
+    """Context in which no other thread uses a scene.
+
+    It is a class, because a generator would take longer than a query of two objects.
+    """
+
+    __slots__ = ("_scene",)
+
+    def __init__(self, scene: ProximityScene) -> None:
+        self._scene = scene
+
+    def __enter__(self) -> None:
+        scene, own = self._scene, threading.get_ident()
+        if scene._owner == own:
             raise RuntimeError("this scene is in use: its progress callback and signal handlers must not use it")
-        with self._busy, reporting(progress) as report:
-            self._owner = threading.get_ident()
-            try:
-                yield report
-            finally:
-                self._owner = None
+        scene._busy.acquire()
+        scene._owner = own
+
+    def __exit__(self, *_: object) -> None:
+        self._scene._owner = None
+        self._scene._busy.release()
 
 
 def separation(
@@ -715,52 +794,6 @@ def collisions(
     return scene.closer_than(distance, threads=threads, progress=progress)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class TriangleDistances(Shown):
-    """Distances of pairs of triangles; the result of :func:`triangle_distances`.
-
-    Examples
-    --------
-    >>> import blum
-    >>> triangle = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
-    >>> found = blum.triangle_distances([triangle], [triangle])
-    >>> found.distance.tolist(), found.closest.shape, found.feature.shape
-    ([0.0], (1, 2, 3), (1, 2, 3))
-    """
-
-    distance: FloatArray  #: Distances: (n,). 0 if and only if the triangles have a point in common.
-    closest: FloatArray  #: Closest points of both: (n, 2, 3). If they meet, a point near both.
-    #: The one, two or three corners (0 to 2) of the feature that contains each: (n, 2, 3), padded with -1.
-    feature: IntArray
-
-
-def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress = False) -> TriangleDistances:
-    """Returns the closest points of pairs of triangles. Contacts are exact. Triangles without area are valid.
-
-    Parameters
-    ----------
-    a, b : (n, 3, 3) arrays
-        Corners of the first and the second triangle of each pair.
-    threads, progress
-        As for :func:`distance_field`.
-
-    Examples
-    --------
-    >>> import blum
-    >>> floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 2], [9, 0, 3], [0, 9, 3]]
-    >>> found = blum.triangle_distances([floor], [above])
-    >>> found.distance.tolist(), found.closest.round(9).tolist()
-    ([2.0], [[[1.0, 1.0, 0.0], [1.0, 1.0, 2.0]]])
-    >>> found.feature.tolist()
-    [[[0, 1, 2], [0, -1, -1]]]
-    """
-    first, second = _triangles(a, "a"), _triangles(b, "b")
-    if len(first) != len(second):
-        raise InvalidMesh(f"a has {len(first)} triangles, but b has {len(second)}: give equal numbers")
-    with reporting(progress) as report:
-        return TriangleDistances(*_core.triangle_distances(first, second, integer(threads, "threads"), report))
-
-
 def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, threads: int) -> ProximityScene:
     """Returns a scene of one or several meshes."""
     if _is_several(meshes):
@@ -805,37 +838,8 @@ def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | 
     return (
         _object(which, "motions"),
         moved,
-        None if transform is None else _place(transform),
+        None if transform is None else as_place(transform),
     )
-
-
-def closest_rotation(matrix: Any) -> FloatArray:
-    """Returns the rotation closest to a matrix that is a rotation except for rounding, in double precision.
-
-    :meth:`ProximityScene.update` needs it for poses in float32.
-
-    Parameters
-    ----------
-    matrix : (3, 3), (3, 4) or (4, 4) array
-        A rotation, or a transform, of which only the rotation changes. Its columns must have length 1 and be
-        perpendicular, to within 0.1.
-
-    Examples
-    --------
-    >>> import blum, numpy as np
-    >>> turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]], dtype=np.float32)
-    >>> rotation = blum.closest_rotation(turn)
-    >>> bool(np.abs(rotation.T @ rotation - np.eye(3)).max() < 1e-15)
-    True
-    """
-    rows = as_array(matrix, "matrix")
-    if rows.dtype.kind not in "fiu":
-        raise TypeError(f"matrix must hold real numbers, not {rows.dtype}")
-    if rows.shape not in ((3, 3), (3, 4), (4, 4)):
-        raise ValueError(f"matrix has the shape {rows.shape}, but must have (3, 3), (3, 4) or (4, 4)")
-    out: FloatArray = np.array(rows, dtype=np.float64)
-    out[:3, :3] = np.reshape(_core.closest_rotation(np.ascontiguousarray(out[:3, :3])), (3, 3))
-    return out
 
 
 def _is_several(meshes: Any) -> TypeGuard[Sequence[MeshLike]]:
@@ -867,34 +871,3 @@ def _object(value: Any, name: str) -> int:
     if index < 0:
         raise InvalidOption(f"{name} is {index}, but must be the number of an object, 0 or more")
     return index
-
-
-def _place(transform: Any) -> FloatArray:
-    """Returns a transform as (3, 4): a rotation and a translation."""
-    if isinstance(transform, (tuple, list)) and len(transform) == 2:
-        rotation, translation = matrix(transform[0], "transform[0]"), triple(transform[1], "transform[1]")
-        rows = np.column_stack([rotation, translation])
-    else:
-        rows = as_array(transform, "transform")
-        if rows.dtype.kind not in "fiu":
-            raise TypeError(f"transform must hold real numbers, not {rows.dtype}")
-        if rows.shape not in ((4, 4), (3, 4)):
-            raise ValueError(
-                f"transform has the shape {rows.shape}, but must have (4, 4) or (3, 4), or be a pair "
-                "(rotation (3, 3), translation (3,))"
-            )
-        if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
-            raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
-    if not np.isfinite(rows).all():
-        raise InvalidOption("transform holds a number that is not finite")
-    return np.ascontiguousarray(rows[:3], dtype=np.float64)
-
-
-def _triangles(value: Any, name: str) -> FloatArray:
-    """Returns an (n, 3, 3) array of float64."""
-    array = as_array(value, name)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
-    if array.ndim != 3 or array.shape[1:] != (3, 3):
-        raise ValueError(f"{name} has the shape {array.shape}, but must have (n, 3, 3)")
-    return np.ascontiguousarray(array, dtype=np.float64)

@@ -639,3 +639,80 @@ def test_closest_rotation_repairs_poses_in_single_precision():
             blum.closest_rotation(wrong)
     with pytest.raises(ValueError, match="shape"):
         blum.closest_rotation([1, 2, 3])
+
+
+def poses_of(count, seed, far):
+    random = np.random.default_rng(seed)
+    poses = np.tile(np.eye(4), (count, 1, 1))
+    for k in range(count):
+        poses[k, :3, :3] = turned(1000 * seed + k)
+        poses[k, :3, 3] = random.uniform(-far, far, 3)
+    return poses
+
+
+def test_meets_equals_separation_and_collisions():
+    scene = blum.ProximityScene()
+    a, b = scene.add(soup(30, 1)), scene.add(blum.generate("sphere", radius=0.4))
+    poses = poses_of(60, 2, 1.4)
+    expected = []
+    for pose in poses:
+        scene.update(b, transform=pose)
+        expected.append(scene.separation(a, b).distance == 0)
+        assert scene.meets(a, b) is scene.meets(b, a, threads=1) is scene.meets() is expected[-1]
+        assert bool(scene.collisions()) is expected[-1]
+    assert 5 < sum(expected) < 55
+    for threads in (1, 2, 7):
+        found = scene.meets(a, b, poses, threads=threads)
+        assert found.dtype == bool and found.tolist() == expected
+    scene.update(b, transform=poses[0])
+    assert scene.meets(a, b, poses[:, :3]).tolist() == expected
+    assert scene.meets(a, b, np.asfortranarray(poses)).tolist() == expected
+    assert scene.meets(a, b) is expected[0], "the scene has changed"
+    assert scene.meets(a, b, np.zeros((0, 4, 4))).shape == (0,)
+
+
+def test_meets_of_an_object_with_itself_equals_collisions():
+    scene = blum.ProximityScene()
+    crossing, ring = scene.add(soup(30, 1), compare_self=True), scene.add(blum.generate("torus"))
+    assert scene.meets(crossing, crossing) is True and scene.meets(ring, ring) is False
+    scene.exclude(crossing, ring)
+    assert scene.meets() is bool(scene.collisions()) is True
+
+
+def test_meets_names_wrong_arguments():
+    scene = blum.ProximityScene()
+    a, b = scene.add(blum.generate("box")), scene.add(blum.generate("box"))
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    for call, error, text in [
+        (lambda: scene.meets(a), blum.InvalidOption, "both a and b"),
+        (lambda: scene.meets(transforms=poses), blum.InvalidOption, "both a and b"),
+        (lambda: scene.meets(a, 7), blum.InvalidOption, "no object 7"),
+        (lambda: scene.meets(a, a, poses), blum.InvalidOption, "itself"),
+        (lambda: scene.meets(a, b, poses[0]), ValueError, r"\(4, 4\), but must have \(n, 4, 4\)"),
+        (lambda: scene.meets(a, b, poses.astype(str)), TypeError, "transforms"),
+        (lambda: scene.meets(a, b, poses + np.eye(4) * [[[0]], [[0]], [[1]]]), blum.InvalidOption, r"transforms\[2\]"),
+        (lambda: scene.meets(a, b, np.concatenate([poses, 2 * poses])[:, :3]), blum.InvalidOption, r"transforms\[3\]"),
+        (lambda: scene.meets(a, b, np.full((2, 3, 4), np.nan)), blum.InvalidOption, r"transforms\[0\]"),
+        (lambda: scene.meets(a, b, threads=-1), blum.InvalidOption, "threads"),
+    ]:
+        with pytest.raises(error, match=text):
+            call()
+
+
+def test_meets_reports_progress():
+    scene = blum.ProximityScene()
+    a, b = scene.add(blum.generate("box")), scene.add(blum.generate("box"))
+    seen = []
+    scene.meets(a, b, poses_of(2000, 3, 2), progress=lambda fraction, phase: seen.append((fraction, phase)))
+    assert seen[-1][0] == 1
+    assert scene.meets(a, b, progress=lambda fraction, phase: seen.append(fraction)) is True
+
+
+def test_long_queries_of_two_objects_end_as_brief_ones(tmp_path):
+    """A search that outlasts the patience of a brief call starts again, and gives the same answer."""
+    ball = blum.generate("sphere", frequency=150)
+    shell = (ball.vertices * 1.0000005, ball.triangles)
+    scene = blum.ProximityScene()
+    a, b = scene.add(ball), scene.add(shell)
+    assert scene.meets(a, b) is False
+    assert 0 < scene.separation(a, b).distance < 1e-6

@@ -1,0 +1,78 @@
+"""Rigid transforms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arguments import FloatArray, as_array, matrix, triple
+from ._errors import InvalidOption
+
+__all__ = ["closest_rotation"]
+
+
+def closest_rotation(matrix: Any) -> FloatArray:
+    """Returns the rotation closest to a matrix that is a rotation except for rounding, in double precision.
+
+    :meth:`ProximityScene.update` needs it for poses in float32.
+
+    Parameters
+    ----------
+    matrix : (3, 3), (3, 4) or (4, 4) array
+        A rotation, or a transform, of which only the rotation changes. Its columns must have length 1 and be
+        perpendicular, to within 0.1.
+
+    Examples
+    --------
+    >>> import blum, numpy as np
+    >>> turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]], dtype=np.float32)
+    >>> rotation = blum.closest_rotation(turn)
+    >>> bool(np.abs(rotation.T @ rotation - np.eye(3)).max() < 1e-15)
+    True
+    """
+    rows = as_array(matrix, "matrix")
+    if rows.dtype.kind not in "fiu":
+        raise TypeError(f"matrix must hold real numbers, not {rows.dtype}")
+    if rows.shape not in ((3, 3), (3, 4), (4, 4)):
+        raise ValueError(f"matrix has the shape {rows.shape}, but must have (3, 3), (3, 4) or (4, 4)")
+    out: FloatArray = np.array(rows, dtype=np.float64)
+    out[:3, :3] = np.reshape(_core.closest_rotation(np.ascontiguousarray(out[:3, :3])), (3, 3))
+    return out
+
+
+def as_place(transform: Any) -> FloatArray:
+    """Returns a transform as (3, 4): a rotation and a translation."""
+    if isinstance(transform, (tuple, list)) and len(transform) == 2:
+        rotation, translation = matrix(transform[0], "transform[0]"), triple(transform[1], "transform[1]")
+        rows = np.column_stack([rotation, translation])
+    else:
+        rows = as_array(transform, "transform")
+        if rows.dtype.kind not in "fiu":
+            raise TypeError(f"transform must hold real numbers, not {rows.dtype}")
+        if rows.shape not in ((4, 4), (3, 4)):
+            raise ValueError(
+                f"transform has the shape {rows.shape}, but must have (4, 4) or (3, 4), or be a pair "
+                "(rotation (3, 3), translation (3,))"
+            )
+        if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
+            raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
+    if not np.isfinite(rows).all():
+        raise InvalidOption("transform holds a number that is not finite")
+    return np.ascontiguousarray(rows[:3], dtype=np.float64)
+
+
+def as_places(transforms: Any) -> FloatArray:
+    """Returns transforms as (n, 3, 4)."""
+    rows = as_array(transforms, "transforms")
+    if rows.dtype.kind not in "fiu":
+        raise TypeError(f"transforms must hold real numbers, not {rows.dtype}")
+    if rows.ndim != 3 or rows.shape[1:] not in ((4, 4), (3, 4)):
+        raise ValueError(f"transforms has the shape {rows.shape}, but must have (n, 4, 4) or (n, 3, 4)")
+    if rows.shape[1] == 4 and not (rows[:, 3] == [0, 0, 0, 1]).all():
+        worst = int(np.argmax((rows[:, 3] != [0, 0, 0, 1]).any(axis=1)))
+        raise InvalidOption(
+            f"the last row of transforms[{worst}] is {rows[worst, 3].tolist()}, but must be [0, 0, 0, 1]"
+        )
+    return np.ascontiguousarray(rows[:, :3], dtype=np.float64)
