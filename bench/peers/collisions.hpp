@@ -18,6 +18,8 @@ class PeerBodies {
   virtual ~PeerBodies() = default;
   /// The distance between the bodies, with the second one at the given place.
   [[nodiscard]] virtual double separation(const RigidTransform& second) = 0;
+  /// Returns true if the surfaces of the bodies meet, with the second one at the given place.
+  [[nodiscard]] virtual bool meets(const RigidTransform& second) = 0;
   /// Replaces the vertices and keeps the triangles. Distances are right afterwards.
   virtual void deform(const TriangleMesh& first, const TriangleMesh& second) = 0;
 };
@@ -32,6 +34,9 @@ enum class FclBodies {
 /// FCL's BVH models; nullptr if FCL was not installed when the benchmarks were configured.
 [[nodiscard]] std::unique_ptr<PeerBodies> fcl_bodies(const TriangleMesh& first, const TriangleMesh& second,
                                                      FclBodies kind);
+
+/// Coal's BVH models with oriented boxes and swept spheres; nullptr if Coal was not installed. They do not deform.
+[[nodiscard]] std::unique_ptr<PeerBodies> coal_bodies(const TriangleMesh& first, const TriangleMesh& second);
 
 /// The pairs of triangles from CGAL's self_intersections(), with exact predicates. They are sorted, each with the
 /// smaller index first. Returns nullopt if CGAL was not installed. @param mesh  an orientable manifold.

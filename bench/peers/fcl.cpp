@@ -31,16 +31,16 @@ class Bodies : public PeerBodies {
       : first_(model<Volume>(first)), second_(model<Volume>(second)) {}
 
   double separation(const RigidTransform& second) override {
-    fcl::Transform3d place = fcl::Transform3d::Identity();
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) {
-        place.linear()(r, c) = second.rotation.columns[c][static_cast<std::size_t>(r)];
-      }
-    }
-    place.translation() = fcl::Vector3d(second.translation.x, second.translation.y, second.translation.z);
     const fcl::DistanceRequestd request(true);
     fcl::DistanceResultd result;
-    return fcl::distance(first_.get(), fcl::Transform3d::Identity(), second_.get(), place, request, result);
+    return fcl::distance(first_.get(), fcl::Transform3d::Identity(), second_.get(), place_of(second), request, result);
+  }
+
+  bool meets(const RigidTransform& second) override {
+    const fcl::CollisionRequestd request(1, false);
+    fcl::CollisionResultd result;
+    return fcl::collide(first_.get(), fcl::Transform3d::Identity(), second_.get(), place_of(second), request, result) >
+           0;
   }
 
   void deform(const TriangleMesh& first, const TriangleMesh& second) override {
@@ -54,6 +54,17 @@ class Bodies : public PeerBodies {
   }
 
  private:
+  static fcl::Transform3d place_of(const RigidTransform& given) {
+    fcl::Transform3d place = fcl::Transform3d::Identity();
+    for (int c = 0; c < 3; ++c) {
+      for (int r = 0; r < 3; ++r) {
+        place.linear()(r, c) = given.rotation.columns[static_cast<std::size_t>(c)][static_cast<std::size_t>(r)];
+      }
+    }
+    place.translation() = fcl::Vector3d(given.translation.x, given.translation.y, given.translation.z);
+    return place;
+  }
+
   static void refit(fcl::BVHModel<Volume>& body, const TriangleMesh& mesh) {
     body.beginReplaceModel();
     body.replaceSubModel(vertices(mesh));

@@ -38,6 +38,11 @@ TriangleMesh make(const std::string& name, std::string& note) {
     note = "generated twin of the " + name;
     return name == "bunny" ? make_organic({.holes = 5}) : name == "fandisk" ? make_fan_part() : organic(20088);
   }
+  if (name == "ballcube" || name == "eight") {
+    const auto off = data_folder() / "meshes" / (name + ".off");
+    note = std::filesystem::exists(off) ? name : "generated twin of the " + name;
+    return std::filesystem::exists(off) ? read_mesh(off) : organic(name == "eight" ? 634 : 10884);
+  }
   note = name;
   if (name == "noisy-1.6M") return noisy_dense();
   return organic(name == "organic" ? 69620 : std::stod(name.substr(8)));
