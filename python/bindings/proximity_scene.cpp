@@ -16,6 +16,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/core/parallel.hpp"
 #include "blum/geometry/primitives.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 #include "call.hpp"
@@ -27,7 +28,8 @@ namespace {
 
 /// Matrix with the rotation in its first three columns and the translation in the last one.
 using PlaceIn = In<double, nb::shape<3, 4>>;
-using PlacesIn = In<double, nb::shape<-1, 3, 4>>;
+/// Matrices of three or four rows.
+using PlacesIn = In<double, nb::shape<-1, -1, 4>>;
 using TrianglesOfPointsIn = In<double, nb::shape<-1, 3, 3>>;
 /// Vertices of the features of both sides, as in files.
 using Features = std::array<std::array<std::int32_t, 3>, 2>;
@@ -41,14 +43,19 @@ RigidTransform place_of(const PlaceIn& rows) {
   return place;
 }
 
-std::vector<RigidTransform> places_of(const PlacesIn& given) {
+std::vector<RigidTransform> places_of(const PlacesIn& given, const Context& context) {
+  constexpr std::size_t grain = 512;
   std::vector<RigidTransform> out(given.shape(0));
-  for (std::size_t n = 0; n < out.size(); ++n) {
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t k = 0; k < 3; ++k) out[n].rotation.columns[k][row] = given(n, row, k);
-      out[n].translation[row] = given(n, row, 3);
+  const std::size_t size = 4 * given.shape(1);
+  parallel_for(context, out.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t n = range.begin; n < range.end; ++n) {
+      const double* const rows = given.data() + n * size;
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t k = 0; k < 3; ++k) out[n].rotation.columns[k][row] = rows[4 * row + k];
+        out[n].translation[row] = rows[4 * row + 3];
+      }
     }
-  }
+  });
   return out;
 }
 
@@ -246,9 +253,8 @@ void bind_meets(nb::class_<ProximityScene>& scene) {
       "meets_at",
       [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const PlacesIn& given, int threads,
          nb::object progress) {
-        const std::vector<RigidTransform> places = places_of(given);
         return handed_over<std::uint8_t>(run({threads, std::move(progress)}, [&](const Context& context) {
-          return self.meets(ObjectId(first), ObjectId(second), places, context);
+          return self.meets(ObjectId(first), ObjectId(second), places_of(given, context), context);
         }));
       },
       nb::arg("first"), nb::arg("second"), nb::arg("places").noconvert(), nb::arg("threads"),

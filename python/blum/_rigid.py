@@ -64,7 +64,7 @@ def as_place(transform: Any) -> FloatArray:
 
 
 def as_places(transforms: Any) -> FloatArray:
-    """Returns transforms as (n, 3, 4)."""
+    """Returns transforms as (n, 3, 4) or (n, 4, 4)."""
     rows = as_array(transforms, "transforms")
     if rows.dtype.kind not in "fiu":
         raise TypeError(f"transforms must hold real numbers, not {rows.dtype}")
@@ -75,4 +75,4 @@ def as_places(transforms: Any) -> FloatArray:
         raise InvalidOption(
             f"the last row of transforms[{worst}] is {rows[worst, 3].tolist()}, but must be [0, 0, 0, 1]"
         )
-    return np.ascontiguousarray(rows[:, :3], dtype=np.float64)
+    return np.ascontiguousarray(rows, dtype=np.float64)

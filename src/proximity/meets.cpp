@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 
@@ -121,8 +123,47 @@ bool meet(const TwoObjects& objects, const Context& context) {
   return meet_in_rounds(Couple(*objects.a, *objects.b, objects.b->place()), candidates, context);
 }
 
+namespace {
+
+/// Returns true if a transform passes check().
+bool is_rigid(const RigidTransform& place) {
+  try {
+    check(place);
+  } catch (const InvalidOption&) {
+    return false;
+  }
+  return true;
+}
+
+/// Checks one of several transforms. @throws InvalidOption with its index.
+void check_nth(std::size_t k, const RigidTransform& place) {
+  try {
+    check(place);
+  } catch (const InvalidOption& error) {
+    throw InvalidOption("transforms[" + std::to_string(k) + "]: " + error.what());
+  }
+}
+
+/// Checks all places with the threads of the context. For many poses that are far apart, checks take a quarter of the
+/// time.
+void check_all(std::span<const RigidTransform> places, const Context& context) {
+  constexpr std::size_t checks_per_range = 512;
+  std::vector<std::size_t> wrong((places.size() + checks_per_range - 1) / checks_per_range, places.size());
+  parallel_for(context, places.size(), checks_per_range, "", [&](const WorkRange& range) {
+    std::size_t k = range.begin;
+    while (k < range.end && is_rigid(places[k])) ++k;
+    if (k < range.end) wrong[range.begin / checks_per_range] = k;
+  });
+  for (const std::size_t k : wrong) {
+    if (k < places.size()) check_nth(k, places[k]);
+  }
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> meet_at(const SceneObject& first, const SceneObject& second,
                                   std::span<const RigidTransform> places, const Context& context) {
+  check_all(places, context);
   std::vector<std::uint8_t> out(places.size());
   CandidateLimit candidates(context);
   parallel_for(context, places.size(), places_per_range, "places", [&](const WorkRange& range) {

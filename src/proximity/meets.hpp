@@ -20,8 +20,7 @@ namespace blum::detail {
 [[nodiscard]] bool meet(const TwoObjects& objects, const Context& context);
 
 /// Returns for each place of the second object 1 if it meets the first one, else 0.
-/// @param places  each must pass check().
-/// @throws as meet().
+/// @throws as meet(); InvalidOption for the first place that does not pass check().
 [[nodiscard]] std::vector<std::uint8_t> meet_at(const SceneObject& first, const SceneObject& second,
                                                 std::span<const RigidTransform> places, const Context& context);
 

@@ -194,15 +194,6 @@ void check_distance(const char* what, double distance) {
   throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
 }
 
-/// Checks one of several transforms. @throws InvalidOption with its index.
-void check_nth(std::size_t k, const RigidTransform& place) {
-  try {
-    check(place);
-  } catch (const InvalidOption& error) {
-    throw InvalidOption("transforms[" + std::to_string(k) + "]: " + error.what());
-  }
-}
-
 /// Calls change(), which may reject a mesh or vertices of an object. Messages of its exceptions then begin with the
 /// object's name, if it has one.
 template <class Change>
@@ -425,7 +416,6 @@ std::vector<std::uint8_t> ProximityScene::meets(ObjectId first, ObjectId second,
     throw InvalidOption("object " + std::to_string(first.value) +
                         " cannot meet itself at another place; add its mesh a second time");
   }
-  for (std::size_t k = 0; k < transforms.size(); ++k) check_nth(k, transforms[k]);
   return detail::meet_at(*two.a, *two.b, transforms, context);
 }
 
