@@ -224,7 +224,7 @@ class ProximityScene:
         place = None if transform is None else as_place(transform)
         count = integer(threads, "threads")
         with self._alone(progress) as report:
-            if place is not None:
+            if place is not None and (rows is not None or own is not None):
                 self._scene.check_place(place)  # Before anything changes.
             if rows is not None:
                 self._scene.set_vertices(which, rows, count, report)

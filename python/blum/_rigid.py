@@ -58,8 +58,6 @@ def as_place(transform: Any) -> FloatArray:
             )
         if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
             raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
-    if not np.isfinite(rows).all():
-        raise InvalidOption("transform holds a number that is not finite")
     return np.ascontiguousarray(rows[:3], dtype=np.float64)
 
 
