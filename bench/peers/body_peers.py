@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Times distances between bodies and close pairs against coal, python-fcl and ipctk.
+"""Times distances between bodies, contacts and close pairs against coal, python-fcl and ipctk.
 
     PYTHONPATH=build/release/python bench/peers/body_peers.py FIRST SECOND [--json FILE]
 
 All programs get the same input, in one run, on one thread. FIRST and SECOND are meshes, scaled to unit size.
 
 Distances are between bodies of constant shape: the mean over ten poses for each of a few gaps.
+
+Questions whether two bodies meet are asked at 500 random poses, one after the other and all in one call. Half of the
+poses are anywhere in a box around the first body, half are deep in it.
 
 Close pairs are all pairs closer than a hundredth of the size. Both bodies are in one mesh and overlap. Blum finds
 pairs of triangles. ipctk finds pairs of a vertex and a face or of two edges, with its exact distances and candidates
@@ -61,6 +64,14 @@ def coal_model(vertices, triangles):
     return model
 
 
+def fcl_model(vertices, triangles):
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(triangles))
+    model.addSubModel(vertices, triangles)
+    model.endModel()
+    return model
+
+
 def coal_distances(models, places):
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     rest = coal.Transform3s.Identity()
@@ -86,13 +97,7 @@ def rigid(bodies):
     for vertices, triangles in bodies:
         scene.add((vertices, triangles))
     models = [coal_model(*body) for body in bodies]
-    fcl_models = []
-    for vertices, triangles in bodies:
-        model = fcl.BVHModel()
-        model.beginModel(len(vertices), len(triangles))
-        model.addSubModel(vertices, triangles)
-        model.endModel()
-        fcl_models.append(model)
+    fcl_models = [fcl_model(*body) for body in bodies]
     out = {}
 
     def ours(places):
@@ -112,6 +117,58 @@ def rigid(bodies):
                     np.abs(np.array(distances) - [d for d, _ in runs[0]]).max())  # fmt: skip
         out[str(gap)] = {"blum_ms": 100 * seconds, "coal_ms": 100 * theirs, "python_fcl_ms": 100 * fcl_seconds,
                          "largest_difference": worst}  # fmt: skip
+    return out
+
+
+def random_poses(count, reach, seed):
+    """Rotations, and translations by up to `reach` along each axis."""
+    random = np.random.default_rng(seed)
+    axes, angles = random.normal(size=(count, 3)), random.uniform(0, 2 * np.pi, count)
+    return [(turned(angle, axis), random.uniform(-reach, reach, 3)) for angle, axis in zip(angles, axes, strict=True)]
+
+
+def meeting(bodies):
+    """Microseconds per pose, and the number of poses at which the bodies meet."""
+    scene = blum.ProximityScene()
+    for body in bodies:
+        scene.add(body)
+    models = [coal_model(*body) for body in bodies]
+    fcl_models = [fcl_model(*body) for body in bodies]
+    request, result, rest = coal.CollisionRequest(), coal.CollisionResult(), coal.Transform3s.Identity()
+    out = {}
+
+    def ours(places):
+        found = []
+        for rotation, translation in places:
+            scene.update(1, transform=(rotation, translation))
+            found.append(scene.meets(0, 1, threads=1))
+        return found
+
+    def theirs(places):
+        found = []
+        for rotation, translation in places:
+            result.clear()
+            place = coal.Transform3s(rotation, translation)
+            found.append(coal.collide(models[0], rest, models[1], place, request, result) > 0)
+        return found
+
+    def of_fcl(places):
+        found = []
+        for rotation, translation in places:
+            there = fcl.CollisionObject(fcl_models[1], fcl.Transform(rotation, translation))
+            found.append(fcl.collide(fcl.CollisionObject(fcl_models[0]), there, fcl.CollisionRequest(),
+                                     fcl.CollisionResult()) > 0)  # fmt: skip
+        return found
+
+    for kind, reach in (("random", 1.0), ("deep", 0.15)):
+        places = random_poses(500, reach, 1)
+        matrices = np.array([np.column_stack(place) for place in places])
+        timed = {"blum": best_of(7, lambda: ours(places)), "coal": best_of(7, lambda: theirs(places)),
+                 "python_fcl": best_of(7, lambda: of_fcl(places)),
+                 "blum_in_one_call": best_of(7, lambda: scene.meets(0, 1, matrices, threads=1).tolist())}  # fmt: skip
+        assert all(found == timed["coal"][1] for _, found in timed.values()), "programs disagree"
+        out[kind] = {f"{name}_us": 1e6 * seconds / len(places) for name, (seconds, _) in timed.items()}
+        out[kind]["meeting"] = sum(timed["blum"][1])
     return out
 
 
@@ -145,7 +202,7 @@ def main():
     parser.add_argument("--json", type=pathlib.Path)
     given = parser.parse_args()
     bodies = [read(given.first), read(given.second)]
-    text = json.dumps({"rigid": rigid(bodies), "close": close(bodies)}, indent=1)
+    text = json.dumps({"rigid": rigid(bodies), "meeting": meeting(bodies), "close": close(bodies)}, indent=1)
     if given.json:
         given.json.write_text(text + "\n")
     print(text)

@@ -185,7 +185,9 @@ def device_name(value: Any) -> str:
 
 
 def integer(value: Any, name: str, bits: int = 32) -> int:
-    """Returns an integer of Python or NumPy as int. It must fit the library's bits."""
+    """Returns an integer of Python or NumPy as int. It must fit the library's bits, at least 32."""
+    if type(value) is int and -0x80000000 <= value <= 0x7FFFFFFF:  # First, because small queries check several.
+        return value
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
     if not -(2 ** (bits - 1)) <= int(value) < 2 ** (bits - 1):

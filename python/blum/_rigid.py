@@ -45,19 +45,20 @@ def closest_rotation(matrix: Any) -> FloatArray:
 def as_place(transform: Any) -> FloatArray:
     """Returns a transform as (3, 4): a rotation and a translation."""
     if isinstance(transform, (tuple, list)) and len(transform) == 2:
-        rotation, translation = matrix(transform[0], "transform[0]"), triple(transform[1], "transform[1]")
-        rows = np.column_stack([rotation, translation])
-    else:
-        rows = as_array(transform, "transform")
-        if rows.dtype.kind not in "fiu":
-            raise TypeError(f"transform must hold real numbers, not {rows.dtype}")
-        if rows.shape not in ((4, 4), (3, 4)):
-            raise ValueError(
-                f"transform has the shape {rows.shape}, but must have (4, 4) or (3, 4), or be a pair "
-                "(rotation (3, 3), translation (3,))"
-            )
-        if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
-            raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
+        out: FloatArray = np.empty((3, 4))
+        out[:, :3] = matrix(transform[0], "transform[0]")
+        out[:, 3] = triple(transform[1], "transform[1]")
+        return out
+    rows = as_array(transform, "transform")
+    if rows.dtype.kind not in "fiu":
+        raise TypeError(f"transform must hold real numbers, not {rows.dtype}")
+    if rows.shape not in ((4, 4), (3, 4)):
+        raise ValueError(
+            f"transform has the shape {rows.shape}, but must have (4, 4) or (3, 4), or be a pair "
+            "(rotation (3, 3), translation (3,))"
+        )
+    if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
+        raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
     return np.ascontiguousarray(rows[:3], dtype=np.float64)
 
 
