@@ -119,7 +119,7 @@ struct Program {
   double sum = 0;  ///< of the answers
 };
 
-/// Runs all programs in turn.
+/// Runs all programs in turn. Figures are CPU microseconds per pose, on one thread.
 void compare(benchmark::State& state, const std::vector<RigidTransform>& places, std::vector<Program> programs) {
   constexpr int rounds = 15;
   for (int round = 0; round < rounds; ++round) {
@@ -133,7 +133,7 @@ void compare(benchmark::State& state, const std::vector<RigidTransform>& places,
   const auto count = static_cast<double>(places.size());
   report(state, median(programs.front().runs), count);
   for (const Program& program : programs) {
-    state.counters[program.name + "_us"] = median(program.runs).wall * 1e6 / count;
+    state.counters[program.name + "_us"] = median(program.runs).cpu * 1e6 / count;
     state.counters[program.name + "_mean_answer"] = program.sum / count;
     if (std::abs(program.sum - programs.front().sum) > 1e-9 * count) state.SkipWithError("programs disagree");
   }
