@@ -203,8 +203,8 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
   }
   unsigned feet = 0;  // a bit for each pair of edges that contain both feet
   for (std::size_t i = 0; i < 9; ++i) {
-    const bool is_inside = (s[i] > 0) & (s[i] < square[i]) & (t[i] > 0) & (t[i] < square[i]);
-    feet |= static_cast<unsigned>(is_inside) << i;
+    const auto holds = [](bool condition) { return static_cast<unsigned>(condition); };
+    feet |= (holds(s[i] > 0) & holds(s[i] < square[i]) & holds(t[i] > 0) & holds(t[i] < square[i])) << i;
   }
   for (; feet != 0; feet &= feet - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(feet));
