@@ -324,6 +324,16 @@ void bind_solids(nb::class_<ProximityScene>& scene) {
       },
       nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   scene.def(
+      "least_translation",
+      [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
+         nb::object progress) {
+        const auto options = options_from<TranslationOptions>(given);
+        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.least_translation(ObjectId(first), ObjectId(second), options, context);
+        }));
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
       "signed_separation",
       [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
          nb::object progress) {
@@ -386,6 +396,8 @@ void bind_proximity_scene(nb::module_& m) {
   nb::class_<ProximityScene> scene(m, "ProximityScene");
   bind_options<SceneOptions>(m);
   bind_options<PenetrationOptions>(m);
+  bind_options<TranslationOptions>(m);
+  bind_struct<LeastTranslation>(m);
   scene.def(
       "__init__",
       [](ProximityScene* self, const nb::dict& given) { new (self) ProximityScene(options_from<SceneOptions>(given)); },

@@ -40,12 +40,13 @@ from ._proximity_results import (
 )
 from ._rigid import as_place, as_places
 from ._scene_copies import SceneObject, restored_scene
-from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
+from ._structs import ImpactOptions, LeastTranslation, PenetrationOptions, SceneOptions, TranslationOptions
 
 __all__ = [
     "ProximityScene",
     "closest_primitives",
     "collisions",
+    "least_translation",
     "separation",
 ]
 
@@ -479,6 +480,44 @@ class ProximityScene:
             found = self._scene.penetration(first, second, dict(options), count, report)
         return ShortList(penetration_of(*part) for part in found)
 
+    @takes("TranslationOptions")
+    def least_translation(
+        self,
+        a: Integer,
+        b: Integer,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[TranslationOptions],
+    ) -> LeastTranslation:
+        """Returns bounds on the shortest translation of solid ``a`` that separates it from solid ``b``.
+
+        This length is also called penetration depth, for example by EPA. Both bounds are equal, except for rounding, if
+        both solids are convex. Both are 0 if the solids are apart or touch.
+
+        Parameters
+        ----------
+        a, b : int
+            Numbers of two objects, which must be closed and face outwards.
+        threads, progress
+            As for :func:`distance_field`.
+        **options
+
+        Examples
+        --------
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> box, ball = scene.add(blum.generate("box")), scene.add(blum.generate("box"))
+        >>> scene.update(ball, transform=([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 0.75]))
+        >>> found = scene.least_translation(box, ball)
+        >>> round(found.lower, 6), round(found.upper, 6), found.are_convex
+        (0.25, 0.25, True)
+        """
+        first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
+        with self._alone(progress) as report:
+            found: LeastTranslation = self._scene.least_translation(first, second, dict(options), count, report)
+        return found
+
     @takes("PenetrationOptions")
     def signed_separation(
         self,
@@ -716,6 +755,37 @@ def separation(
     for name, mesh in (("a", a), ("b", b)):
         scene.add(as_mesh(mesh, name=name), name=name, threads=threads)
     return scene.separation(0, 1, max_distance, threads=threads, progress=progress)
+
+
+@takes("TranslationOptions")
+def least_translation(
+    a: MeshLike, b: MeshLike, *, threads: int = 0, progress: Progress = False, **options: Unpack[TranslationOptions]
+) -> LeastTranslation:
+    """Returns bounds on the shortest translation of solid ``a`` that separates it from solid ``b``.
+
+    This length is also called penetration depth, for example by EPA. Both bounds are equal, except for rounding, if
+    both solids are convex. Both are 0 if the solids are apart or touch.
+
+    Parameters
+    ----------
+    a, b : meshes
+        Closed meshes that face outwards.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    Examples
+    --------
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> found = blum.least_translation(box, (box.vertices + [0.75, 0, 0], box.triangles))
+    >>> round(found.lower, 6), round(found.upper, 6), found.translation.round(6).tolist()
+    (0.25, 0.25, [-0.25, 0.0, 0.0])
+    """
+    scene = ProximityScene()
+    for name, mesh in (("a", a), ("b", b)):
+        scene.add(as_mesh(mesh, name=name), name=name, threads=threads)
+    return scene.least_translation(0, 1, threads=threads, progress=progress, **options)
 
 
 def closest_primitives(

@@ -22,6 +22,7 @@
 #include "proximity/first_search.hpp"
 #include "proximity/impact_search.hpp"
 #include "proximity/meets.hpp"
+#include "proximity/least_translation.hpp"
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
 #include "proximity/scene_penetration.hpp"
@@ -492,6 +493,11 @@ Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const 
   out.object_pairs = 1;
   out.parts = std::move(detail::penetrations({&two, 1}, options, context, out.phases).front());
   return out;
+}
+
+LeastTranslation ProximityScene::least_translation(ObjectId first, ObjectId second, const TranslationOptions& options,
+                                                   const Context& context) const {
+  return detail::least_translation(data_->two(first, second), options, context);
 }
 
 Penetrations ProximityScene::penetrations(const PenetrationOptions& options, const Context& context) const {

@@ -164,6 +164,7 @@ TAKERS = {
     "self_distance_map": lambda mesh: blum.self_distance_map(mesh, texel=0.1),
     "thickness_map": lambda mesh: blum.thickness_map(mesh, texel=0.1),
     "hausdorff_distance": lambda mesh: blum.hausdorff_distance(mesh, mesh),
+    "least_translation": lambda mesh: blum.least_translation(mesh, blum.generate("box")),
     "directed_hausdorff_distance": lambda mesh: blum.directed_hausdorff_distance(mesh, mesh),
     "surface_deviation": lambda mesh: blum.surface_deviation(mesh, mesh),
     "view": page_of,

@@ -79,6 +79,7 @@ def results():
         "separation of a pair": moving.separation(0, 1),
         "closest_primitives": moving.closest_primitives(),
         "penetrations": moving.penetrations(),
+        "least_translation": blum.least_translation(blum.generate("box"), blum.generate("box")),
         "continuous": moving.continuous({0: blum.generate("bracket").vertices + 1}),
         "continuous_collisions": blum.continuous_collisions(BRACKET, BRACKET.vertices + 1),
         "first_contact": blum.first_contact(BRACKET, BRACKET.vertices * [1, 1, -1]),

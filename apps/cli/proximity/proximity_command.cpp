@@ -98,6 +98,7 @@ void add_proximity_command(const CommandLine& line) {
       "proximity", "Exact distances, collisions and overlaps of meshes: one subcommand per query");
   command.require_subcommand();
   for (const SceneQuery& query : scene_queries()) add_query(command, query);
+  add_translation_query(command);
   command.footer(examples);
 }
 

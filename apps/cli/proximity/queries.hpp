@@ -104,6 +104,9 @@ struct MovingMesh {
 /// Runs any query except `continuous`. Each file is one object.
 void run_scene_query(const ProximityArguments& a, const SceneQuery& query);
 
+/// Adds the subcommand `translation`, which takes two solids.
+void add_translation_query(const Command& parent);
+
 /// Runs any query with --frames. The files are the frames of one object, in the given order.
 void run_frames(const ProximityArguments& a, const SceneQuery& query);
 

@@ -21,6 +21,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/proximity/first_contact.hpp"
 #include "blum/proximity/impact.hpp"
+#include "blum/proximity/least_translation.hpp"
 #include "blum/proximity/motion.hpp"
 #include "blum/proximity/penetration.hpp"
 
@@ -272,6 +273,15 @@ class ProximityScene {
   /// Cost: that of penetration() for each pair whose boxes meet. For the objects of other pairs, the cost is only 0.3
   /// microseconds per triangle, once for each object. Progress counts the pairs.
   [[nodiscard]] Penetrations penetrations(const PenetrationOptions& options = {}, const Context& context = {}) const;
+
+  /// Returns bounds on the length of the shortest translation of the first solid that separates it from the second.
+  /// Unlike penetration(), this is one length for the whole pair. Both bounds are equal, except for rounding, if both
+  /// solids are convex. Both are 0 if the solids are apart or touch.
+  /// @throws InvalidMesh as penetration(); InvalidOption, also if both objects are the same; Cancelled.
+  /// Cost: see blum::least_translation().
+  [[nodiscard]] LeastTranslation least_translation(ObjectId first, ObjectId second,
+                                                   const TranslationOptions& options = {},
+                                                   const Context& context = {}) const;
 
   /// Returns the signed distance of two solids, mesh units. It is their distance if they are apart, 0 if they touch,
   /// and minus the largest depth if they overlap. If the boxes of both objects are apart, their surfaces may be open.
