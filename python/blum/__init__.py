@@ -43,6 +43,7 @@ from . import (
     _surface_map,
     _transform,
     _triangle_distances,
+    _translation,
     _verifier,
     _view,
     _voronoi,
@@ -81,6 +82,7 @@ from ._structs import *
 from ._surface_map import *
 from ._transform import *
 from ._triangle_distances import *
+from ._translation import *
 from ._verifier import *
 from ._view import *
 from ._voronoi import *
@@ -119,6 +121,7 @@ __all__ += _solid.__all__
 __all__ += _structs.__all__
 __all__ += _surface_map.__all__
 __all__ += _transform.__all__
+__all__ += _translation.__all__
 __all__ += _verifier.__all__
 __all__ += _view.__all__
 __all__ += _voronoi.__all__

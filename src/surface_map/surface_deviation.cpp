@@ -2,138 +2,334 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/scale.hpp"
 #include "blum/field/closest_points.hpp"
+#include "surface_map/deviation_piece.hpp"
+#include "surface_map/linear_values.hpp"
 #include "surface_map/weighted_statistics.hpp"
 
 namespace blum {
 namespace {
 
+using surface::DeviationBounds;
+using surface::DeviationPiece;
+using surface::LinearValue;
 using surface::LongSum;
 
-constexpr std::size_t triangles_per_range = 256;
-/// Greatest number of pieces. This number takes about 100 gigabytes.
+constexpr std::size_t pieces_per_range = 64;
+/// Greatest number of pieces. This number takes about 150 gigabytes.
 constexpr std::size_t most_pieces = 1'000'000'000;
+/// Greatest number of pieces that one piece is divided into before the statistics are computed again.
+constexpr std::size_t most_per_piece = 64;
+/// Number of pieces whose statistics take as long as the bounds of thousands of pieces.
+constexpr std::size_t many_pieces = 20'000;
+/// Number of bounds for one piece and its halves.
+constexpr std::size_t least_per_piece = 3;
 
-/// Small triangles, each represented by its centroid. *Scaled* lengths are those of the mesh times a scale.
-struct Pieces {
-  std::vector<Vec3d> centroid;      ///< mesh units
-  std::vector<double> area;         ///< scaled
-  std::vector<double> mean_square;  ///< mean squared distance of a piece's points from its centroid, scaled
-  double largest_radius = 0;        ///< largest distance of a corner from its centroid, scaled
-
-  void append(const Pieces& more) {
-    centroid.insert(centroid.end(), more.centroid.begin(), more.centroid.end());
-    area.insert(area.end(), more.area.begin(), more.area.end());
-    mean_square.insert(mean_square.end(), more.mean_square.begin(), more.mean_square.end());
-    largest_radius = std::max(largest_radius, more.largest_radius);
-  }
+/// Statistics of all pieces, in the units of the search.
+struct Statistics {
+  double mean = 0;
+  double mean_error = 0;
+  double rms = 0;
+  double rms_error = 0;
+  double mean_magnitude = 0;
+  double largest_magnitude = 0;
+  std::pair<double, double> smallest;  ///< bounds
+  std::pair<double, double> largest;
+  std::vector<double> lower, upper;  ///< bounds of the percentiles
 };
 
-class Cutter {
- public:
-  /// @param size  greatest length of a side of a piece, scaled.
-  Cutter(double scale, double size) : scale_(scale), squared_size_(size * size) {}
-
-  void cut(const std::array<Vec3d, 3>& corners, Pieces& out) const {
-    const double area = length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2;
-    if (area > 0) divide(corners, area, out);
-  }
-
- private:
-  void divide(const std::array<Vec3d, 3>& p, double area, Pieces& out) const {
-    const std::array<double, 3> squared = squared_sides(p);
-    const auto longest = static_cast<std::size_t>(std::max_element(squared.begin(), squared.end()) - squared.begin());
-    if (squared[longest] <= squared_size_) return add(p, area, out);
-    const Vec3d& a = p[longest];
-    const Vec3d& b = p[(longest + 1) % 3];
-    const Vec3d& c = p[(longest + 2) % 3];
-    if (2 * area <= squared[longest] / 8 && 4 * area * area <= squared_size_ * squared[longest]) {
-      // Halving a needle yields two needles side by side, so it is cut across instead.
-      const double part = std::clamp(dot(c - a, b - a) / squared[longest], 0.0, 1.0);
-      const Vec3d foot = a + (b - a) * part;
-      cut_needle(a, foot, c, area * part, out);
-      cut_needle(b, c, foot, area * (1 - part), out);
-      return;
-    }
-    const Vec3d middle = (a + b) * 0.5;
-    divide({a, middle, c}, area / 2, out);
-    divide({middle, b, c}, area / 2, out);
-  }
-
-  /// Cuts a triangle along lines that are parallel to its short side bc.
-  void cut_needle(const Vec3d& tip, const Vec3d& b, const Vec3d& c, double area, Pieces& out) const {
-    if (!(area > 0)) return;
-    const double longer = std::sqrt(std::max(squared_length(b - tip), squared_length(c - tip)));
-    const auto count = static_cast<std::size_t>(std::ceil(longer / std::sqrt(squared_size_)));
-    const double one = area / (static_cast<double>(count) * static_cast<double>(count));
-    Vec3d last_b = tip;
-    Vec3d last_c = tip;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double at = static_cast<double>(k + 1) / static_cast<double>(count);
-      const Vec3d next_b = tip + (b - tip) * at;
-      const Vec3d next_c = tip + (c - tip) * at;
-      add({last_b, next_b, next_c}, one * static_cast<double>(k + 1), out);
-      if (k > 0) add({last_b, next_c, last_c}, one * static_cast<double>(k), out);
-      last_b = next_b;
-      last_c = next_c;
-    }
-  }
-
-  static std::array<double, 3> squared_sides(const std::array<Vec3d, 3>& p) {
-    return {squared_length(p[1] - p[0]), squared_length(p[2] - p[1]), squared_length(p[0] - p[2])};
-  }
-
-  void add(const std::array<Vec3d, 3>& p, double area, Pieces& out) const {
-    const std::array<double, 3> squared = squared_sides(p);
-    const Vec3d centroid = (p[0] + p[1] + p[2]) / 3.0;
-    out.centroid.push_back(centroid / scale_);
-    out.area.push_back(area);
-    out.mean_square.push_back((squared[0] + squared[1] + squared[2]) / 36);
-    for (const Vec3d& corner : p) out.largest_radius = std::max(out.largest_radius, length(corner - centroid));
-  }
-
-  double scale_;
-  double squared_size_;
-};
-
-/// Sums of areas and of longest sides over all triangles, scaled.
-struct Extent {
-  double area = 0;
-  double longest_sides = 0;
-};
-
-Extent extent_of(const MeshView& mesh, double scale) {
-  Extent out;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto [a, b, c] = triangle_corners(mesh, t);
-    out.area += length(cross((b - a) * scale, (c - a) * scale)) / 2;
-    out.longest_sides += std::max({length((b - a) * scale), length((c - b) * scale), length((a - c) * scale)});
-  }
-  return out;
+double half_width(const std::pair<double, double>& bounds) {
+  return (bounds.second - bounds.first) / 2;
 }
 
-Pieces pieces_of(const MeshView& mesh, double scale, double size, const Context& context) {
-  const Cutter cutter(scale, size);
-  std::vector<Pieces> parts((mesh.triangles.size() + triangles_per_range - 1) / triangles_per_range);
-  parallel_for(context, mesh.triangles.size(), triangles_per_range, "", [&](const WorkRange& range) {
-    Pieces& part = parts[range.begin / triangles_per_range];
-    for (std::size_t t = range.begin; t < range.end; ++t) {
-      std::array<Vec3d, 3> corners = triangle_corners(mesh, t);
-      for (Vec3d& corner : corners) corner *= scale;
-      cutter.cut(corners, part);
-    }
-  });
-  Pieces out;
-  for (Pieces& part : parts) {
-    out.append(part);
-    part = {};
+/// Divides a surface into pieces until the statistics are precise enough.
+class DeviationSearch {
+ public:
+  /// @param mesh, other  scaled so that the largest coordinate of both is about 1.
+  /// @param area_scale   the scaled mesh times this has a size of about 1.
+  /// @param tolerance    largest error of statistics; nullopt: `usual` or a tenth of the mean, if that is smaller.
+  DeviationSearch(const MeshView& mesh, const MeshView& other, double area_scale, std::optional<double> tolerance,
+                  double usual, const DeviationOptions& options, const Context& context)
+      : mesh_(mesh),
+        other_(other),
+        query_(other, {options.sign, {}}, context),
+        tolerance_(tolerance),
+        usual_(usual),
+        most_(options.pieces),
+        context_(context) {
+    make_pieces(area_scale);
   }
+
+  [[nodiscard]] Statistics find() {
+    Statistics found = statistics();
+    while (spent_ < most_ - most_ / 8) {  // the last few would take many rounds
+      const std::vector<std::uint32_t> wanted = pieces_to_divide(found);
+      if (wanted.empty()) break;
+      divide(wanted);
+      found = statistics();
+    }
+    return found;
+  }
+
+  [[nodiscard]] const ClosestPointQuery& query() const { return query_; }
+  [[nodiscard]] std::size_t size() const { return pieces_.size(); }
+  /// Returns the area of all pieces, in square units of the constructor's `area_scale`.
+  [[nodiscard]] double area() const { return area_; }
+  /// Returns the percentiles of the middles of all bounds.
+  [[nodiscard]] std::vector<double> percentiles() const { return percentiles_of(0); }
+  [[nodiscard]] double percentile_rounding() const { return percentile_rounding_; }
+
+ private:
+  /// Makes a piece of each triangle with an area. Its bounds follow from the distance of its centroid.
+  void make_pieces(double area_scale) {
+    std::vector<Vec3d> centroids;
+    LongSum area;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::array<Vec3d, 3> p = triangle_corners(mesh_, t);
+      const double own = length(cross((p[1] - p[0]) * area_scale, (p[2] - p[0]) * area_scale)) / 2;
+      if (!(own > 0)) continue;
+      DeviationPiece& piece = pieces_.emplace_back();
+      piece.corners = p;
+      piece.area = own;
+      area.add(own);
+      centroids.push_back((p[0] + p[1] + p[2]) / 3.0);
+    }
+    area_ = area.value();
+    if (pieces_.empty()) return;
+    const std::vector<ClosestPoint> found = query_.nearest(centroids, context_);
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      const double own = pieces_[k].area;
+      pieces_[k] = surface::piece_around(pieces_[k].corners, found[k].distance);
+      pieces_[k].area = own;
+    }
+    spent_ = pieces_.size() / 4;  // a search takes a quarter of the time that sharpen() takes
+  }
+
+  [[nodiscard]] Statistics statistics() {
+    Statistics out;
+    LongSum mean, mean_error, square, square_error, magnitude;
+    out.smallest = out.largest = {HUGE_VAL, HUGE_VAL};
+    out.largest = {-HUGE_VAL, -HUGE_VAL};
+    for (const DeviationPiece& piece : pieces_) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double low = piece.value[k] - piece.error[k];
+        const double high = piece.value[k] + piece.error[k];
+        out.smallest = {std::min(out.smallest.first, low), std::min(out.smallest.second, high)};
+        out.largest = {std::max(out.largest.first, low), std::max(out.largest.second, high)};
+      }
+    }
+    out.largest_magnitude = std::max(std::abs(out.smallest.first), std::abs(out.largest.second));
+    const double unit = out.largest_magnitude > 0 ? out.largest_magnitude : 1;  // squares must not underflow
+    for (const DeviationPiece& piece : pieces_) {
+      mean.add(piece.area * piece.mean_value());
+      mean_error.add(piece.area * piece.mean_error());
+      magnitude.add(piece.area * std::abs(piece.mean_value()));
+      std::array<double, 3> value{}, error{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        value[k] = piece.value[k] / unit;
+        error[k] = piece.error[k] / unit;
+      }
+      square.add(piece.area * surface::mean_square(value));
+      square_error.add(piece.area * surface::mean_square(error));
+    }
+    out.mean = mean.value() / area_;
+    out.mean_error = mean_error.value() / area_;
+    out.mean_magnitude = magnitude.value() / area_;
+    out.rms = unit * std::sqrt(square.value() / area_);
+    out.rms_error = unit * std::sqrt(square_error.value() / area_);
+    percentile_rounding_ = tolerance_of(out) / 1000;
+    out.lower = percentiles_of(-1);
+    out.upper = percentiles_of(1);
+    return out;
+  }
+
+  /// Returns the percentiles of the values plus the errors times `side`.
+  [[nodiscard]] std::vector<double> percentiles_of(double side) const {
+    std::vector<LinearValue> values;
+    values.reserve(pieces_.size());
+    for (const DeviationPiece& piece : pieces_) {
+      const auto at = [&](std::size_t k) { return piece.value[k] + side * piece.error[k]; };
+      values.push_back(surface::linear_value(at(0), at(1), at(2), piece.area));
+    }
+    return surface::percentiles(values, SurfaceDeviation::percents, percentile_rounding_, context_);
+  }
+
+  /// Returns the largest error that is wanted.
+  [[nodiscard]] double tolerance_of(const Statistics& found) const {
+    const double usual = std::min(usual_, 0.1 * (found.mean_magnitude + found.mean_error));
+    return std::max(tolerance_.value_or(usual), 1e-14);
+  }
+
+  /// Returns the pieces that must be divided to make the statistics more precise, in rising order. Returns none if all
+  /// statistics are precise enough.
+  [[nodiscard]] std::vector<std::uint32_t> pieces_to_divide(const Statistics& found) {
+    const double tolerance = tolerance_of(found);
+    const bool is_mean_wanted = found.mean_error > tolerance || found.rms_error > tolerance;
+    const double of_percentiles = (tolerance_ ? 1 : 2) * tolerance;
+    Ranges by_area;
+    for (std::size_t k = 0; k < found.lower.size(); ++k) {
+      const std::pair bounds{found.lower[k], found.upper[k]};
+      if (half_width(bounds) > of_percentiles) by_area.push_back(bounds);
+    }
+    Ranges of_corners;
+    for (const auto& bounds : {found.smallest, found.largest}) {
+      if (half_width(bounds) > of_percentiles) of_corners.push_back(bounds);
+    }
+    goal_ = 0.9 * (is_mean_wanted ? tolerance : of_percentiles);
+    std::vector<std::uint32_t> out;
+    // Mean errors of pieces usually decide, but only small largest errors guarantee small errors of all statistics.
+    for (const bool is_strict : {false, true}) {
+      for (std::uint32_t k = 0; k < pieces_.size(); ++k) {
+        const bool is_large = pieces_[k].largest_error() > goal_;
+        const bool is_bad = is_strict ? is_large : pieces_[k].mean_error() > goal_;
+        if ((is_bad && (is_mean_wanted || meets(pieces_[k], by_area))) || (is_large && meets(pieces_[k], of_corners))) {
+          out.push_back(k);
+        }
+      }
+      if (!out.empty()) break;
+    }
+    keep_worst(out);
+    keep_most_useful(out);
+    return out;
+  }
+
+  using Ranges = std::vector<std::pair<double, double>>;
+  static bool meets(const DeviationPiece& piece, const Ranges& ranges) {
+    if (ranges.empty()) return false;
+    const auto [low, high] = piece.range();
+    return std::any_of(ranges.begin(), ranges.end(), [low = low, high = high](const std::pair<double, double>& bounds) {
+      return low <= bounds.second && high >= bounds.first;
+    });
+  }
+
+  /// Keeps the pieces with the largest errors, and sets the goal. Results for these pieces may make the division of the
+  /// others needless.
+  void keep_worst(std::vector<std::uint32_t>& wanted) {
+    // Many pieces are divided in few rounds, because each computes all statistics again.
+    const std::size_t least = pieces_.size() / (pieces_.size() < many_pieces ? 16 : 3) + 1;
+    if (wanted.size() <= least) return;
+    std::vector<double> errors;
+    for (const std::uint32_t k : wanted) errors.push_back(pieces_[k].mean_error());
+    std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(least), errors.end(),
+                     std::greater<>());
+    const double most = *std::max_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(least));
+    goal_ = std::max(goal_, std::min(most / 4, errors[least]));
+    std::erase_if(wanted, [&](std::uint32_t k) { return pieces_[k].mean_error() < errors[least]; });
+  }
+
+  /// Keeps as many pieces as may still be divided: those that contribute most to the error of the mean.
+  void keep_most_useful(std::vector<std::uint32_t>& wanted) const {
+    const std::size_t left = (most_ - spent_) / least_per_piece + 1;
+    if (wanted.size() <= left) return;
+    const auto weight = [&](std::uint32_t k) { return pieces_[k].area * pieces_[k].mean_error(); };
+    std::nth_element(
+        wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(left), wanted.end(),
+        [&](std::uint32_t a, std::uint32_t b) { return weight(a) != weight(b) ? weight(a) > weight(b) : a < b; });
+    wanted.resize(left);
+    std::sort(wanted.begin(), wanted.end());
+  }
+
+  void divide(const std::vector<std::uint32_t>& wanted) {
+    if (!bounds_) bounds_.emplace(other_, query_.sign_rule() == SignRule::none ? nullptr : &query_, context_);
+    const std::size_t each = std::clamp<std::size_t>((most_ - spent_) / wanted.size(), least_per_piece, most_per_piece);
+    struct Divided {
+      std::vector<DeviationPiece> pieces;
+      std::size_t spent = 0;
+    };
+    std::vector<Divided> parts((wanted.size() + pieces_per_range - 1) / pieces_per_range);
+    parallel_for(context_, wanted.size(), pieces_per_range, "", [&](const WorkRange& range) {
+      Divided& part = parts[range.begin / pieces_per_range];
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        part.spent += divide(pieces_[wanted[k]], each, part.pieces);
+      }
+    });
+    std::size_t next = 0;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      if (next < wanted.size() && wanted[next] == k) {
+        ++next;
+      } else {
+        pieces_[kept++] = pieces_[k];
+      }
+    }
+    pieces_.resize(kept);
+    for (Divided& part : parts) {
+      pieces_.insert(pieces_.end(), part.pieces.begin(), part.pieces.end());
+      spent_ += part.spent;
+      part = {};
+    }
+  }
+
+  /// Divides one piece at least once, until no mean error of its parts is above the goal.
+  /// @param most  number of bounds that may be computed, at least `least_per_piece`.
+  /// @param out   receives the parts.
+  /// @return      the number of bounds that were computed.
+  std::size_t divide(const DeviationPiece& piece, std::size_t most, std::vector<DeviationPiece>& out) const {
+    std::vector<DeviationPiece> open{piece};
+    std::size_t spent = 0;
+    while (!open.empty()) {
+      DeviationPiece now = open.back();
+      open.pop_back();
+      if (!now.is_sharp) {
+        const DeviationPiece before = now;
+        bounds_->sharpen(now);
+        if (now.mean_error() > before.mean_error()) {
+          now.value = before.value;
+          now.error = before.error;
+        }
+        ++spent;
+      }
+      if ((spent > 0 && now.mean_error() <= goal_) || spent + 2 > most) {
+        out.push_back(now);
+        continue;
+      }
+      for (const DeviationPiece& half : bounds_->halves(now)) open.push_back(half);
+      spent += 2;
+    }
+    return spent;
+  }
+
+  MeshView mesh_;
+  MeshView other_;
+  ClosestPointQuery query_;
+  std::optional<double> tolerance_;
+  double usual_;
+  std::size_t most_;
+  const Context& context_;
+  std::optional<DeviationBounds> bounds_;
+  std::vector<DeviationPiece> pieces_;
+  double percentile_rounding_ = 0;  ///< percentiles are found up to this
+  double area_ = 0;
+  double goal_ = 0;        ///< largest mean error of a piece that is not divided further
+  std::size_t spent_ = 0;  ///< number of bounds that were computed
+};
+
+void check(const DeviationOptions& options) {
+  if (options.pieces < 1 || options.pieces > most_pieces) {
+    throw InvalidOption("pieces is " + std::to_string(options.pieces) + ", but must be 1 to " +
+                        std::to_string(most_pieces));
+  }
+  if (options.max_error && !(*options.max_error > 0 && std::isfinite(*options.max_error))) {
+    throw InvalidOption("max_error is " + exact_text(*options.max_error) + ", but must be a number above 0");
+  }
+}
+
+/// Returns a copy of vertices, multiplied by a factor.
+std::vector<Vec3d> scaled(std::span<const Vec3d> vertices, double scale) {
+  std::vector<Vec3d> out(vertices.begin(), vertices.end());
+  for (Vec3d& v : out) v *= scale;
   return out;
 }
 
@@ -142,55 +338,45 @@ Pieces pieces_of(const MeshView& mesh, double scale, double size, const Context&
 SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, const DeviationOptions& options,
                                    const Context& context) {
   validate(mesh);
-  if (options.pieces < 1 || options.pieces > most_pieces) {
-    throw InvalidOption("pieces is " + std::to_string(options.pieces) + ", but must be 1 to " +
-                        std::to_string(most_pieces));
-  }
-  const double scale = scale_to_one(bounds(mesh).largest_coordinate());
-  const Extent extent = extent_of(mesh, scale);
-  if (!(extent.area > 0)) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to measure");
-  const ClosestPointQuery query(other, {options.sign, {}}, context);
-  // Halving of right-angled isosceles triangles yields pieces with areas of 1/8 to 1/4 of `size` squared. Needles are
-  // only cut across their lengths.
-  const auto count = static_cast<double>(options.pieces);
-  const double size = std::max(std::sqrt(4 * extent.area / count), extent.longest_sides / count);
-  const Pieces pieces = pieces_of(mesh, scale, size, context);
-  const std::vector<ClosestPoint> found = query.nearest(pieces.centroid, context);
+  validate(other);
+  check(options);
+  Box3 box = bounds(mesh);
+  const double own = scale_to_one(box.largest_coordinate());
+  box.extend(bounds(other).lower);
+  box.extend(bounds(other).upper);
+  const double scale = scale_to_one(box.largest_coordinate());
+  const std::array<std::vector<Vec3d>, 2> vertices{scaled(mesh.vertices, scale), scaled(other.vertices, scale)};
+  std::array<MeshView, 2> meshes{mesh, other};
+  for (std::size_t k = 0; k < 2; ++k) meshes[k].vertices = vertices[k];
+  std::optional<double> tolerance = options.max_error;
+  if (tolerance) *tolerance *= scale;
+  DeviationSearch search(meshes[0], meshes[1], own / scale, tolerance, box.diagonal() * scale / 2000, options, context);
+  if (!(search.area() > 0)) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to measure");
+  const Statistics found = search.find();
+  const ClosestPointQuery& query = search.query();
 
   SurfaceDeviation out;
-  std::vector<double> values(found.size());
-  LongSum areas;
-  LongSum mean;
-  double magnitude = 0;
-  double largest = 0;
-  double mean_move = 0;
-  double square_move = 0;
-  out.smallest = HUGE_VAL;
-  out.largest = -HUGE_VAL;
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    values[k] = found[k].distance;
-    const double value = values[k] * scale;
-    areas.add(pieces.area[k]);
-    mean.add(pieces.area[k] * value);
-    magnitude += pieces.area[k] * std::abs(value);
-    largest = std::max(largest, std::abs(value));
-    mean_move += pieces.area[k] * std::sqrt(pieces.mean_square[k]);
-    square_move += pieces.area[k] * pieces.mean_square[k];
-    out.smallest = std::min(out.smallest, values[k]);
-    out.largest = std::max(out.largest, values[k]);
-  }
-  const double sum = areas.value();
-  out.mean = mean.value() / sum / scale;
-  const double rounding = 4e-15 * (bounds(mesh).largest_coordinate() * scale + largest);
+  const double rounding = 4e-15 * (1 + box.largest_coordinate() * scale + found.largest_magnitude);
   // If the sign may change at points that are not on the other mesh, it may differ within a piece.
   const bool may_jump = query.sign_may_jump();
-  out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
-  out.rms = surface::root_mean_square(values, pieces.area, largest / scale, sum);
-  out.rms_error = (std::sqrt(square_move / sum) + rounding) / scale;
-  out.percentiles = surface::percentiles(values, pieces.area, sum, SurfaceDeviation::percents);
-  out.percentile_error = (pieces.largest_radius + rounding + (may_jump ? 2 * largest : 0)) / scale;
-  out.area = extent.area / scale / scale;
-  out.pieces = found.size();
+  out.mean = found.mean / scale;
+  out.mean_error = (found.mean_error + rounding + (may_jump ? 2 * found.mean_magnitude : 0)) / scale;
+  out.rms = found.rms / scale;
+  out.rms_error = (found.rms_error + rounding) / scale;
+  const double least = query.sign_rule() == SignRule::none ? 0 : -HUGE_VAL;
+  double percentile_error = std::max(half_width(found.smallest), half_width(found.largest));
+  out.smallest = std::max((found.smallest.first + found.smallest.second) / 2, least) / scale;
+  out.largest = (found.largest.first + found.largest.second) / 2 / scale;
+  const std::vector<double> middles = search.percentiles();
+  for (std::size_t k = 0; k < middles.size(); ++k) {
+    out.percentiles[k] = middles[k] / scale;
+    percentile_error = std::max({percentile_error, found.upper[k] - middles[k], middles[k] - found.lower[k]});
+  }
+  out.percentile_error =
+      (percentile_error + search.percentile_rounding() + rounding + (may_jump ? 2 * found.largest_magnitude : 0)) /
+      scale;
+  out.area = search.area() / own / own;
+  out.pieces = search.size();
   out.sign_rule = query.sign_rule();
   out.sign_reason = query.sign_reason();
   out.warnings = query.warnings();

@@ -2,27 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 namespace blum::surface {
-
 namespace {
-
-/// @param at  callable: returns value k and its weight.
-template <class At>
-double root_mean_square_of(std::size_t count, double largest, double sum, const At& at) {
-  if (!(largest > 0)) return 0;
-  LongSum square;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto [value, weight] = at(k);
-    const double part = value / largest;
-    square.add(weight * part * part);
-  }
-  return largest * std::sqrt(square.value() / sum);
-}
 
 /// Place at which the weight below a value begins to grow faster or more slowly, or jumps.
 struct Event {
@@ -53,14 +36,14 @@ std::vector<Event> events_of(std::span<const SpreadValue> values) {
 
 }  // namespace
 
-double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest, double sum) {
-  return root_mean_square_of(values.size(), largest, sum,
-                             [&](std::size_t k) { return std::pair{values[k], weights[k]}; });
-}
-
 double root_mean_square(std::span<const SpreadValue> values, double largest, double sum) {
-  return root_mean_square_of(values.size(), largest, sum,
-                             [&](std::size_t k) { return std::pair{values[k].middle, values[k].weight}; });
+  if (!(largest > 0)) return 0;
+  LongSum square;
+  for (const SpreadValue& v : values) {
+    const double part = v.middle / largest;
+    square.add(v.weight * part * part);
+  }
+  return largest * std::sqrt(square.value() / sum);
 }
 
 std::array<double, 7> percentiles(std::span<const SpreadValue> values, const std::array<double, 7>& percents) {
@@ -87,23 +70,6 @@ std::array<double, 7> percentiles(std::span<const SpreadValue> values, const std
     at = event.at;
     for (; next < out.size() && below.value() >= wanted[next]; ++next) out[next] = at;
   }
-  return out;
-}
-
-std::array<double, 7> percentiles(std::span<const double> values, std::span<const double> weights, double sum,
-                                  const std::array<double, 7>& percents) {
-  std::vector<std::uint32_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return values[a] != values[b] ? values[a] < values[b] : a < b; });
-  std::array<double, 7> out{};
-  std::size_t next = 0;
-  double below = 0;
-  for (const std::uint32_t k : order) {
-    below += weights[k];
-    while (next < out.size() && below >= sum * percents[next] / 100) out[next++] = values[k];
-  }
-  while (next < out.size()) out[next++] = values[order.back()];
   return out;
 }
 

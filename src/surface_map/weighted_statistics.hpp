@@ -23,13 +23,6 @@ class LongSum {
   double rest_ = 0;
 };
 
-/// Returns the weighted root mean square.
-/// @param largest  largest magnitude of the values. Values are divided by it, so that squares neither overflow nor
-/// underflow.
-/// @param sum      sum of the weights, above 0.
-[[nodiscard]] double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest,
-                                      double sum);
-
 /// Values that vary within their part of the area: uniformly, from `middle - spread` to `middle + spread`.
 struct SpreadValue {
   double middle = 0;
@@ -38,7 +31,9 @@ struct SpreadValue {
 };
 
 /// Returns the weighted root mean square of the middles.
-/// @param largest  as above, of the middles.
+/// @param largest  largest magnitude of the middles. They are divided by it, so that squares neither overflow nor
+/// underflow.
+/// @param sum      sum of the weights, above 0.
 [[nodiscard]] double root_mean_square(std::span<const SpreadValue> values, double largest, double sum);
 
 /// Returns, for each percentage, the value below which that percentage of the total weight lies.
@@ -47,14 +42,5 @@ struct SpreadValue {
 /// Cost: O(values log values).
 [[nodiscard]] std::array<double, 7> percentiles(std::span<const SpreadValue> values,
                                                 const std::array<double, 7>& percents);
-
-/// Returns, for each percentage, the smallest value such that values up to it have at least that percentage of the
-/// total weight.
-/// @param values    at least one, fewer than 2^32.
-/// @param sum      sum of the weights, above 0.
-/// @param percents  in rising order.
-/// Cost: O(values log values).
-[[nodiscard]] std::array<double, 7> percentiles(std::span<const double> values, std::span<const double> weights,
-                                                double sum, const std::array<double, 7>& percents);
 
 }  // namespace blum::surface

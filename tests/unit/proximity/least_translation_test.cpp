@@ -37,8 +37,8 @@ TriangleMesh turned(TriangleMesh mesh, double angle) {
   return mesh;
 }
 
-/// Returns the least height of the Minkowski difference over the normals of all faces it may have: those of both
-/// solids, and products of one edge of each.
+/// Returns the least height of the Minkowski difference over the normals of all faces that it may have. These are the
+/// normals of both solids, and products of one edge of each.
 double slow_depth(const TriangleMesh& a, const TriangleMesh& b) {
   std::vector<Vec3d> normals;
   std::vector<std::vector<Vec3d>> edges(2);

@@ -1,0 +1,87 @@
+// Blum: bounds on the distances of all points of a small triangle from a mesh. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/field/closest_points.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum::surface {
+
+/// A part of a triangle of a surface. The deviation of each of its points x is at most error(x) from value(x). Both
+/// change linearly between the corners.
+struct DeviationPiece {
+  std::array<Vec3d, 3> corners{};
+  std::array<double, 3> value{};
+  std::array<double, 3> error{};  ///< not negative
+  double area = 0;                ///< above 0, in a unit of the caller's choice
+  std::int8_t sign = 0;           ///< sign of all deviations; 0: unknown, or both signs occur
+  std::uint8_t side = 3;          ///< side to halve, from corner `side` to the next one; 3: the longest
+  bool is_sharp = false;          ///< true if the bounds follow from several primitives of the mesh
+
+  [[nodiscard]] double mean_value() const { return (value[0] + value[1] + value[2]) / 3; }
+  [[nodiscard]] double mean_error() const { return (error[0] + error[1] + error[2]) / 3; }
+  [[nodiscard]] double largest_error() const;
+  /// Returns the smallest and the largest deviation that a point of the piece may have.
+  [[nodiscard]] std::pair<double, double> range() const;
+};
+
+/// Bounds the distances of pieces from a mesh.
+class DeviationBounds {
+ public:
+  /// @param mesh       must outlive this object. The largest coordinate of the mesh, and of pieces, must be about 1.
+  /// @param signs      decides the signs of distances from the same mesh; nullptr: unsigned. Must outlive this object.
+  /// @throws Cancelled.
+  DeviationBounds(const MeshView& mesh, const ClosestPointQuery* signs, const Context& context);
+
+  /// Computes the bounds of a piece from the primitives that may be closest to one of its points. With a distance d and
+  /// a side h of the piece, errors are about h^2 / 8 d on curved and 0 on flat parts.
+  /// @param piece  has its corners, right but wider bounds and, if it is known, its sign.
+  /// Cost: 1 to 5 us.
+  /// Method: docs/theory/surface-maps.md.
+  void sharpen(DeviationPiece& piece) const;
+
+  /// Halves a piece, and computes the bounds of both halves.
+  [[nodiscard]] std::array<DeviationPiece, 2> halves(const DeviationPiece& piece) const;
+
+ private:
+  struct Linear;
+  struct Search;
+  [[nodiscard]] Linear examine(const DeviationPiece& piece, Search& search) const;
+  void collect(Search& search) const;
+  void find_partners();
+  [[nodiscard]] Vec3d closest_point(const Vec3d& query, std::uint32_t primitive) const;
+  [[nodiscard]] std::uint32_t partner_of(std::uint32_t primitive) const;
+  [[nodiscard]] bool is_behind_partner(const Search& search, const NearestPrimitive& one) const;
+  [[nodiscard]] double front_of(std::uint32_t primitive, const Vec3d& direction, const Vec3d& origin) const;
+  [[nodiscard]] Linear upper_bound(const DeviationPiece& piece, const Search& search) const;
+  [[nodiscard]] Linear lower_bound(const DeviationPiece& piece, const Search& search, const Linear& upper) const;
+  void set_values(DeviationPiece& piece, const Search& search, const Linear& lower, const Linear& upper) const;
+  static void set_crossing(DeviationPiece& piece, const Search& search, const Linear& upper, double at_centroid);
+
+  MeshView mesh_;
+  SiteTable sites_;
+  Bvh bvh_;
+  const ClosestPointQuery* signs_;
+  /// For each triangle: another triangle in the same plane, so that both together are a convex quadrilateral; or the
+  /// triangle itself.
+  std::vector<std::uint32_t> partner_;
+};
+
+/// Returns a piece whose bounds follow from the deviation of its centroid alone. Its errors are the distances of the
+/// corners from the centroid.
+[[nodiscard]] DeviationPiece piece_around(const std::array<Vec3d, 3>& corners, double deviation);
+
+/// Returns the mean square of a linear function over a triangle.
+/// @param values  of the function at the corners.
+[[nodiscard]] double mean_square(const std::array<double, 3>& values);
+
+}  // namespace blum::surface
