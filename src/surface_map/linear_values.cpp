@@ -63,9 +63,11 @@ class Histogram {
 
 /// Finds the value below which a given weight lies, by halving of an interval that contains it.
 /// @param below   weight of the triangles whose values are all below the interval.
-/// @param error   largest error of the result.
+/// @param error     largest error of the result.
+/// @param is_upper  true for an upper bound of the value, false for a lower bound.
 /// @param active  triangles with values in the interval. The list is changed.
-double halve(double low, double high, double wanted, double below, double error, std::vector<LinearValue>& active) {
+double halve(double low, double high, double wanted, double below, double error, bool is_upper,
+             std::vector<LinearValue>& active) {
   while (!active.empty()) {
     double least = active.front().lowest;
     double most = active.front().highest;
@@ -90,7 +92,7 @@ double halve(double low, double high, double wanted, double below, double error,
       std::erase_if(active, [&](const LinearValue& v) { return v.highest <= middle; });
     }
   }
-  return high;
+  return is_upper ? high : low;
 }
 
 }  // namespace
@@ -111,7 +113,7 @@ double fraction_below(const LinearValue& triangle, double value) {
 }
 
 std::vector<double> percentiles(std::span<const LinearValue> values, std::span<const double> percents, double error,
-                                const Context& context) {
+                                bool is_upper, const Context& context) {
   const Histogram histogram(values);
   const double enough = std::max(error, 1e-15 * histogram.range());
   std::vector<double> out(percents.size());
@@ -127,7 +129,7 @@ std::vector<double> percentiles(std::span<const LinearValue> values, std::span<c
         active.push_back(v);
       }
     }
-    out[range.begin] = halve(low, high, wanted, below.value(), enough, active);
+    out[range.begin] = halve(low, high, wanted, below.value(), enough, is_upper, active);
   });
   return out;
 }

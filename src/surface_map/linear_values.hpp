@@ -23,14 +23,15 @@ struct LinearValue {
 /// Returns the fraction of a triangle's area on which its value is at most `value`.
 [[nodiscard]] double fraction_below(const LinearValue& triangle, double value);
 
-/// Returns, for each percentage, the value below which that percentage of the total weight lies. Results are at most
-/// `error`, or 1e-15 times the range of the values, too large.
+/// Returns, for each percentage, a bound on the value below which that percentage of the total weight lies. Bounds are
+/// at most `error`, or 1e-15 times the range of the values, from that value.
 /// @param values    at least one.
 /// @param percents  above 0 and below 100.
+/// @param is_upper  true for upper bounds, false for lower bounds.
 /// @return          the same for any number of threads.
 /// @throws Cancelled.
 /// Cost: 30 ns per value.
 [[nodiscard]] std::vector<double> percentiles(std::span<const LinearValue> values, std::span<const double> percents,
-                                              double error, const Context& context);
+                                              double error, bool is_upper, const Context& context);
 
 }  // namespace blum::surface

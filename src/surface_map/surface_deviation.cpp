@@ -15,6 +15,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/scale.hpp"
 #include "blum/field/closest_points.hpp"
+#include "surface_map/cut_surface.hpp"
 #include "surface_map/deviation_piece.hpp"
 #include "surface_map/linear_values.hpp"
 #include "surface_map/weighted_statistics.hpp"
@@ -34,6 +35,10 @@ constexpr std::size_t most_pieces = 1'000'000'000;
 constexpr std::size_t most_per_piece = 64;
 /// Number of pieces whose statistics take as long as the bounds of thousands of pieces.
 constexpr std::size_t many_pieces = 20'000;
+/// Number of searches for one closest point that take as long as sharpen().
+constexpr std::size_t search_share = 10;
+/// A mesh is cut at once if it has more triangles than the number of pieces divided by this.
+constexpr std::size_t triangles_for_cut = 4;
 /// Number of bounds for one piece and its halves.
 constexpr std::size_t least_per_piece = 3;
 
@@ -49,6 +54,10 @@ struct Statistics {
   std::pair<double, double> largest;
   std::vector<double> lower, upper;  ///< bounds of the percentiles
 };
+
+double middle(const std::pair<double, double>& bounds) {
+  return bounds.first + (bounds.second - bounds.first) / 2;
+}
 
 double half_width(const std::pair<double, double>& bounds) {
   return (bounds.second - bounds.first) / 2;
@@ -87,34 +96,45 @@ class DeviationSearch {
   [[nodiscard]] std::size_t size() const { return pieces_.size(); }
   /// Returns the area of all pieces, in square units of the constructor's `area_scale`.
   [[nodiscard]] double area() const { return area_; }
-  /// Returns the percentiles of the middles of all bounds.
-  [[nodiscard]] std::vector<double> percentiles() const { return percentiles_of(0); }
-  [[nodiscard]] double percentile_rounding() const { return percentile_rounding_; }
 
  private:
-  /// Makes a piece of each triangle with an area. Its bounds follow from the distance of its centroid.
+  /// Makes a piece of each triangle with an area. Its bounds follow from the distance of its centroid. If the mesh has
+  /// many triangles, they are cut into all pieces at once: many such bounds take less time than a few narrow ones.
   void make_pieces(double area_scale) {
+    if (mesh_.triangles.size() > most_ / triangles_for_cut) {
+      const double size = tolerance_.value_or(0);
+      for (const surface::CutPiece& one :
+           surface::cut_surface(mesh_, static_cast<double>(most_ * search_share), size, context_)) {
+        add_piece(one.corners, one.area * area_scale * area_scale);
+      }
+    } else {
+      for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+        const std::array<Vec3d, 3> p = triangle_corners(mesh_, t);
+        add_piece(p, length(cross((p[1] - p[0]) * area_scale, (p[2] - p[0]) * area_scale)) / 2);
+      }
+    }
+    if (pieces_.empty()) return;
     std::vector<Vec3d> centroids;
     LongSum area;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      const std::array<Vec3d, 3> p = triangle_corners(mesh_, t);
-      const double own = length(cross((p[1] - p[0]) * area_scale, (p[2] - p[0]) * area_scale)) / 2;
-      if (!(own > 0)) continue;
-      DeviationPiece& piece = pieces_.emplace_back();
-      piece.corners = p;
-      piece.area = own;
-      area.add(own);
-      centroids.push_back((p[0] + p[1] + p[2]) / 3.0);
+    for (const DeviationPiece& piece : pieces_) {
+      area.add(piece.area);
+      centroids.push_back((piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0);
     }
     area_ = area.value();
-    if (pieces_.empty()) return;
     const std::vector<ClosestPoint> found = query_.nearest(centroids, context_);
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
       const double own = pieces_[k].area;
       pieces_[k] = surface::piece_around(pieces_[k].corners, found[k].distance);
       pieces_[k].area = own;
     }
-    spent_ = pieces_.size() / 4;  // a search takes a quarter of the time that sharpen() takes
+    spent_ = mesh_.triangles.size() > most_ / triangles_for_cut ? most_ : pieces_.size() / search_share;
+  }
+
+  void add_piece(const std::array<Vec3d, 3>& corners, double area) {
+    if (!(area > 0)) return;
+    DeviationPiece& piece = pieces_.emplace_back();
+    piece.corners = corners;
+    piece.area = area;
   }
 
   [[nodiscard]] Statistics statistics() {
@@ -149,21 +169,21 @@ class DeviationSearch {
     out.mean_magnitude = magnitude.value() / area_;
     out.rms = unit * std::sqrt(square.value() / area_);
     out.rms_error = unit * std::sqrt(square_error.value() / area_);
-    percentile_rounding_ = tolerance_of(out) / 1000;
-    out.lower = percentiles_of(-1);
-    out.upper = percentiles_of(1);
+    out.lower = percentiles_of(-1, tolerance_of(out) / 1000);
+    out.upper = percentiles_of(1, tolerance_of(out) / 1000);
     return out;
   }
 
-  /// Returns the percentiles of the values plus the errors times `side`.
-  [[nodiscard]] std::vector<double> percentiles_of(double side) const {
+  /// Returns bounds on the percentiles: those of the values plus the errors times `side`, which is 1 or -1.
+  /// @param error  bounds may be this much wider than needed.
+  [[nodiscard]] std::vector<double> percentiles_of(double side, double error) const {
     std::vector<LinearValue> values;
     values.reserve(pieces_.size());
     for (const DeviationPiece& piece : pieces_) {
       const auto at = [&](std::size_t k) { return piece.value[k] + side * piece.error[k]; };
       values.push_back(surface::linear_value(at(0), at(1), at(2), piece.area));
     }
-    return surface::percentiles(values, SurfaceDeviation::percents, percentile_rounding_, context_);
+    return surface::percentiles(values, SurfaceDeviation::percents, error, side > 0, context_);
   }
 
   /// Returns the largest error that is wanted.
@@ -175,7 +195,7 @@ class DeviationSearch {
   /// Returns the pieces that must be divided to make the statistics more precise, in rising order. Returns none if all
   /// statistics are precise enough.
   [[nodiscard]] std::vector<std::uint32_t> pieces_to_divide(const Statistics& found) {
-    const double tolerance = tolerance_of(found);
+    const double tolerance = 0.99 * tolerance_of(found);  // rounding is added later
     const bool is_mean_wanted = found.mean_error > tolerance || found.rms_error > tolerance;
     const double of_percentiles = (tolerance_ ? 1 : 2) * tolerance;
     Ranges by_area;
@@ -310,7 +330,6 @@ class DeviationSearch {
   const Context& context_;
   std::optional<DeviationBounds> bounds_;
   std::vector<DeviationPiece> pieces_;
-  double percentile_rounding_ = 0;  ///< percentiles are found up to this
   double area_ = 0;
   double goal_ = 0;        ///< largest mean error of a piece that is not divided further
   std::size_t spent_ = 0;  ///< number of bounds that were computed
@@ -365,16 +384,14 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   out.rms_error = (found.rms_error + rounding) / scale;
   const double least = query.sign_rule() == SignRule::none ? 0 : -HUGE_VAL;
   double percentile_error = std::max(half_width(found.smallest), half_width(found.largest));
-  out.smallest = std::max((found.smallest.first + found.smallest.second) / 2, least) / scale;
-  out.largest = (found.largest.first + found.largest.second) / 2 / scale;
-  const std::vector<double> middles = search.percentiles();
-  for (std::size_t k = 0; k < middles.size(); ++k) {
-    out.percentiles[k] = middles[k] / scale;
-    percentile_error = std::max({percentile_error, found.upper[k] - middles[k], middles[k] - found.lower[k]});
+  out.smallest = std::max(middle(found.smallest), least) / scale;
+  out.largest = middle(found.largest) / scale;
+  for (std::size_t k = 0; k < out.percentiles.size(); ++k) {
+    const std::pair bounds{found.lower[k], found.upper[k]};
+    out.percentiles[k] = std::max(middle(bounds), least) / scale;
+    percentile_error = std::max(percentile_error, half_width(bounds));
   }
-  out.percentile_error =
-      (percentile_error + search.percentile_rounding() + rounding + (may_jump ? 2 * found.largest_magnitude : 0)) /
-      scale;
+  out.percentile_error = (percentile_error + rounding + (may_jump ? 2 * found.largest_magnitude : 0)) / scale;
   out.area = search.area() / own / own;
   out.pieces = search.size();
   out.sign_rule = query.sign_rule();

@@ -36,7 +36,7 @@ def test_convex_solids_match_scipy(seed):
     assert found.lower - 1e-12 <= depth <= found.upper + 1e-12
     assert np.isclose(np.linalg.norm(found.translation), found.upper, atol=1e-14)
     if depth > 0:  # a slightly longer translation leaves no overlap
-        moved = a[0] + found.translation * (1 + 1e-9)
+        moved = a[0] + np.asarray(found.translation) * (1 + 1e-9)
         scene = blum.ProximityScene()
         first, second = scene.add((moved, a[1])), scene.add(b)
         assert scene.penetration(first, second) == []

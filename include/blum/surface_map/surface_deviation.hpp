@@ -20,11 +20,13 @@ namespace blum {
 
 struct DeviationOptions {
   /// Largest error of means, root mean squares and percentiles, > 0, mesh units. The surface is divided into pieces
-  /// until all errors are below. Unset: a two-thousandth of the diagonal of the box around both meshes, or a tenth of
-  /// the mean distance if that is smaller; twice as much for percentiles.
+  /// until all errors are below. Unset: a two-thousandth of the diagonal of the box around both meshes. It is a tenth
+  /// of the mean distance if that is smaller. For percentiles, it is twice as much.
   std::optional<double> max_error = {};
   /// Largest number of pieces that are examined, 1 to 10^9. If more would be needed, the division stops with larger
-  /// errors. Each triangle is at least one piece, whatever this number.
+  /// errors. Each triangle is at least one piece, whatever this number. If the mesh has more than a quarter as many
+  /// triangles, they are cut evenly, into about ten times as many pieces. Only the distance of the centroid is then
+  /// computed for each.
   std::size_t pieces = 100'000;
   /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside of the other
   /// mesh.
