@@ -79,6 +79,17 @@ double DeviationPiece::largest_error() const {
   return largest(error);
 }
 
+double DeviationPiece::mean_error() const {
+  return is_sharp ? sum(error) / 3 : std::sqrt(mean_square_error());
+}
+
+/// If the piece is not sharp, the errors are distances from the centroid. Their mean square is a twelfth of the sum of
+/// those of the corners.
+double DeviationPiece::mean_square_error() const {
+  if (is_sharp) return mean_square(error);
+  return (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / 12;
+}
+
 std::pair<double, double> DeviationPiece::range() const {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;

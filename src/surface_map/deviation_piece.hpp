@@ -28,7 +28,10 @@ struct DeviationPiece {
   bool is_sharp = false;          ///< true if the bounds follow from several primitives of the mesh
 
   [[nodiscard]] double mean_value() const { return (value[0] + value[1] + value[2]) / 3; }
-  [[nodiscard]] double mean_error() const { return (error[0] + error[1] + error[2]) / 3; }
+  /// Returns a bound on the mean of the error.
+  [[nodiscard]] double mean_error() const;
+  /// Returns the mean square of the error.
+  [[nodiscard]] double mean_square_error() const;
   [[nodiscard]] double largest_error() const;
   /// Returns the smallest and the largest deviation that a point of the piece may have.
   [[nodiscard]] std::pair<double, double> range() const;

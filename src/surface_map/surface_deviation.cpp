@@ -36,7 +36,7 @@ constexpr std::size_t most_per_piece = 64;
 /// Number of pieces whose statistics take as long as the bounds of thousands of pieces.
 constexpr std::size_t many_pieces = 20'000;
 /// Number of searches for one closest point that take as long as sharpen().
-constexpr std::size_t search_share = 10;
+constexpr std::size_t search_share = 7;
 /// A mesh is cut at once if it has more triangles than the number of pieces divided by this.
 constexpr std::size_t triangles_for_cut = 4;
 /// Number of bounds for one piece and its halves.
@@ -103,10 +103,10 @@ class DeviationSearch {
   void make_pieces(double area_scale) {
     if (mesh_.triangles.size() > most_ / triangles_for_cut) {
       const double size = tolerance_.value_or(0);
-      for (const surface::CutPiece& one :
-           surface::cut_surface(mesh_, static_cast<double>(most_ * search_share), size, context_)) {
-        add_piece(one.corners, one.area * area_scale * area_scale);
-      }
+      const std::vector<surface::CutPiece> cut =
+          surface::cut_surface(mesh_, static_cast<double>(most_ * search_share), size, context_);
+      pieces_.reserve(cut.size());
+      for (const surface::CutPiece& one : cut) add_piece(one.corners, one.area * area_scale * area_scale);
     } else {
       for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
         const std::array<Vec3d, 3> p = triangle_corners(mesh_, t);
@@ -116,6 +116,7 @@ class DeviationSearch {
     if (pieces_.empty()) return;
     std::vector<Vec3d> centroids;
     LongSum area;
+    centroids.reserve(pieces_.size());
     for (const DeviationPiece& piece : pieces_) {
       area.add(piece.area);
       centroids.push_back((piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0);
@@ -156,19 +157,16 @@ class DeviationSearch {
       mean.add(piece.area * piece.mean_value());
       mean_error.add(piece.area * piece.mean_error());
       magnitude.add(piece.area * std::abs(piece.mean_value()));
-      std::array<double, 3> value{}, error{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        value[k] = piece.value[k] / unit;
-        error[k] = piece.error[k] / unit;
-      }
+      std::array<double, 3> value{};
+      for (std::size_t k = 0; k < 3; ++k) value[k] = piece.value[k] / unit;
       square.add(piece.area * surface::mean_square(value));
-      square_error.add(piece.area * surface::mean_square(error));
+      square_error.add(piece.area * piece.mean_square_error());
     }
     out.mean = mean.value() / area_;
     out.mean_error = mean_error.value() / area_;
     out.mean_magnitude = magnitude.value() / area_;
     out.rms = unit * std::sqrt(square.value() / area_);
-    out.rms_error = unit * std::sqrt(square_error.value() / area_);
+    out.rms_error = std::sqrt(square_error.value() / area_);
     out.lower = percentiles_of(-1, tolerance_of(out) / 1000);
     out.upper = percentiles_of(1, tolerance_of(out) / 1000);
     return out;

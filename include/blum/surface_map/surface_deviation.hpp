@@ -25,8 +25,8 @@ struct DeviationOptions {
   std::optional<double> max_error = {};
   /// Largest number of pieces that are examined, 1 to 10^9. If more would be needed, the division stops with larger
   /// errors. Each triangle is at least one piece, whatever this number. If the mesh has more than a quarter as many
-  /// triangles, they are cut evenly, into about ten times as many pieces. Only the distance of the centroid is then
-  /// computed for each.
+  /// triangles, they are cut evenly, into about seven to fifteen times as many pieces. Only the distance of the
+  /// centroid is then computed for each.
   std::size_t pieces = 100'000;
   /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside of the other
   /// mesh.
