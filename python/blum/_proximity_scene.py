@@ -489,28 +489,20 @@ class ProximityScene:
         progress: Progress = False,
         **options: Unpack[TranslationOptions],
     ) -> LeastTranslation:
-        """Returns bounds on the shortest translation of solid ``a`` that separates it from solid ``b``.
-
-        This length is also called penetration depth, for example by EPA. Both bounds are equal, except for rounding, if
-        both solids are convex. Both are 0 if the solids are apart or touch.
+        """Returns the result of :func:`blum.least_translation` for two objects.
 
         Parameters
         ----------
-        a, b : int
-            Numbers of two objects, which must be closed and face outwards.
-        threads, progress
-            As for :func:`distance_field`.
+        a, b, threads, progress
+            As for :meth:`penetration`, but not the same object twice.
         **options
 
         Examples
         --------
         >>> import blum
-        >>> scene = blum.ProximityScene()
-        >>> box, ball = scene.add(blum.generate("box")), scene.add(blum.generate("box"))
-        >>> scene.update(ball, transform=([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 0.75]))
-        >>> found = scene.least_translation(box, ball)
-        >>> round(found.lower, 6), round(found.upper, 6), found.are_convex
-        (0.25, 0.25, True)
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> scene.least_translation(scene.add(box), scene.add(box)).are_convex
+        True
         """
         first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
         with self._alone(progress) as report:
