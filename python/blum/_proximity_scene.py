@@ -14,17 +14,7 @@ from typing import Any, TypeGuard, Unpack, cast, overload
 import numpy as np
 
 from . import _core
-from ._arguments import (
-    BoolArray,
-    FloatArray,
-    Integer,
-    Real,
-    float_rows,
-    integer,
-    number,
-    text,
-    truth,
-)
+from ._arguments import BoolArray, FloatArray, Integer, Real, float_rows, integer, number, text, truth
 from ._errors import InvalidMesh, InvalidOption
 from ._mesh import MeshLike, as_mesh, end_vertices, mesh_of_arrays
 from ._methods import ShortList
