@@ -22,6 +22,7 @@ constexpr double passing = 0.25;    // of the radius: a way that passes a rim so
 constexpr int steps_along_rim = 3;  // A way passes rims so close to its own start without meeting them.
 /// A way that is longer than the ways beside it by more than this factor leads past what they meet.
 constexpr double longer_way = 1.5;
+constexpr double longest_corner = 2.5;  // the same for ways to corners
 constexpr double on_same_sheet = 0.02;  // of the radius: a sheet so close to a corner contains it
 constexpr int most_halvings = 6;
 /// The common point of three planes is computed only if the determinant of their unit normals is at least this.
@@ -381,7 +382,7 @@ std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) con
   const bool knows_strips = obstacles_.strips != nullptr;
   if (is_at_sheet(a, b) && knows_strips && !on_sheet(*meeting, on_same_sheet * start->radius, *start))
     return std::nullopt;
-  if (is_at_sheet(a, b) && length(way) > longer_way * longest_way(a, b)) return std::nullopt;
+  if (is_at_sheet(a, b) && length(way) > longest_corner * longest_way(a, b)) return std::nullopt;
   const std::optional<RimTarget> target = at(*meeting, corner_tolerance * start->reach, *start);
   return target ? std::optional(Stop{*start, *target}) : std::nullopt;
 }

@@ -20,6 +20,7 @@ using Edge = std::array<std::uint32_t, 2>;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t longest_gap = 10;  // edges around a gap that is filled
+constexpr double longest_loop = 12;      // thicknesses: the length of these edges
 constexpr std::size_t most_groups = 8;   // of joins that are tried one by one; many groups hardly ever fit
 
 /// Returns the values with the given indices.
@@ -53,18 +54,44 @@ class GapFiller {
     for (std::uint32_t t = 0; t < sheets.triangles.size(); ++t) count(t);
   }
 
-  void fill(const Edge& rim) {
-    const auto side = sides_.find(sorted(rim[0], rim[1]));
-    if (side == sides_.end() || side->second.size() != 1) return;
-    const std::uint32_t own = side->second[0];
-    const std::vector<std::uint32_t> loop = loop_of(rim);
-    const bool is_at_seam = std::any_of(loop.begin(), loop.end(), [&](auto v) { return on_seams_.contains(v); });
-    if (loop.size() < 3 || !is_at_seam) return;
-    for (const Triangle& triangle : smallest_fan(loop)) add(triangle, own);
+  /// Fills gaps at rim edges without strips, and other small gaps at seams.
+  void fill_all(const std::vector<Edge>& gaps) {
+    for (const Edge& gap : gaps) fill(gap);
+    std::vector<Edge> at_seams;
+    for (const auto& [edge, triangles] : sides_) {
+      const bool is_border = triangles.size() == 1;
+      if (is_border && (on_seams_.contains(edge[0]) || on_seams_.contains(edge[1]))) at_seams.push_back(edge);
+    }
+    for (const Edge& edge : at_seams) fill(edge);
   }
 
  private:
   [[nodiscard]] const Vec3d& at(std::uint32_t v) const { return sheets_.positions[v]; }
+
+  void fill(const Edge& border) {
+    const auto side = sides_.find(sorted(border[0], border[1]));
+    if (side == sides_.end() || side->second.size() != 1) return;
+    const std::uint32_t own = side->second[0];
+    const std::vector<std::uint32_t> loop = loop_of(directed(border, own));
+    const bool is_at_seam = std::any_of(loop.begin(), loop.end(), [&](auto v) { return on_seams_.contains(v); });
+    if (loop.size() < 3 || !is_at_seam || length_of(loop) > longest_loop * sheets_.thickness[loop[0]]) return;
+    for (const Triangle& triangle : smallest_fan(loop)) add(triangle, own);
+  }
+
+  /// Returns an edge in the direction of a triangle.
+  [[nodiscard]] Edge directed(const Edge& edge, std::uint32_t t) const {
+    const Triangle& corners = sheets_.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (corners[k] == edge[0] && corners[(k + 1) % 3] == edge[1]) return edge;
+    }
+    return {edge[1], edge[0]};
+  }
+
+  [[nodiscard]] double length_of(const std::vector<std::uint32_t>& loop) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < loop.size(); ++k) sum += length(at(loop[(k + 1) % loop.size()]) - at(loop[k]));
+    return sum;
+  }
 
   void count(std::uint32_t t) {
     const Triangle& corners = sheets_.triangles[t];
@@ -77,8 +104,8 @@ class GapFiller {
     }
   }
 
-  /// Returns the shortest loop of border edges that contains a rim edge, in the direction against its triangle. Returns
-  /// no vertices if the loop has too many edges.
+  /// Returns the shortest loop of border edges that contains a border edge, in the direction against its triangle.
+  /// Returns no vertices if the loop has too many edges.
   [[nodiscard]] std::vector<std::uint32_t> loop_of(const Edge& rim) const {
     std::map<std::uint32_t, std::uint32_t> from{{rim[0], rim[0]}};
     std::vector<std::uint32_t> front{rim[0]};
@@ -247,10 +274,7 @@ class SheetSharer {
       out.seams.push_back({part.ends, indices[part.border]});
     }
     for (const JoinedSheets::Part& part : joined.unshared) sheets.unshared_length += length_of(sheets, part);
-    if (!contacts_.gaps.empty() && !joined.seams.empty()) {
-      GapFiller filler(sheets, joined.seams, is_inside_);
-      for (const Edge& gap : contacts_.gaps) filler.fill(gap);
-    }
+    if (!joined.seams.empty()) GapFiller(sheets, joined.seams, is_inside_).fill_all(contacts_.gaps);
     remove_curves(out);
     remove_unused_vertices(sheets);
     return out;
@@ -260,7 +284,7 @@ class SheetSharer {
     return length(sheets.positions[part.ends[1]] - sheets.positions[part.ends[0]]);
   }
 
-  /// Removes each connected group of curves if the ball around each of its vertices contains a point of a seam. Such
+  /// Removes each connected group of curves if each of its vertices is within two radii of a seam. Such
   /// curves lead through the gap between two sheets, which is now closed.
   void remove_curves(Attempt& joined) const {
     std::vector<bool> is_in_triangle(joined.sheets.positions.size(), false);
@@ -290,11 +314,11 @@ class SheetSharer {
     curves = std::move(kept);
   }
 
-  /// Returns true if the ball of a vertex of the axis contains a point of a seam.
+  /// Returns true if a vertex of the axis is within two radii of a seam.
   [[nodiscard]] bool is_near_seam(std::uint32_t v, const Attempt& joined) const {
     const std::vector<Vec3d>& at = joined.sheets.positions;
     return std::any_of(joined.seams.begin(), joined.seams.end(), [&](const JoinedSheets::Part& seam) {
-      return length(closest_point_on_segment(at[v], at[seam.ends[0]], at[seam.ends[1]]) - at[v]) <= radius_[v];
+      return length(closest_point_on_segment(at[v], at[seam.ends[0]], at[seam.ends[1]]) - at[v]) <= 2 * radius_[v];
     });
   }
 
