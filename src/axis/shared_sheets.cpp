@@ -245,7 +245,9 @@ class SheetSharer {
     }
     std::vector<std::pair<std::size_t, std::set<std::uint32_t>>> ordered;
     for (auto& [group, of_group] : found) ordered.push_back(std::move(of_group));
-    std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first > b.first : a.second < b.second;
+    });
     std::vector<std::set<std::uint32_t>> out;
     for (auto& [size, borders] : ordered) out.push_back(std::move(borders));
     return out;

@@ -170,7 +170,7 @@ std::optional<FirstContact> SceneMotion::first(std::span<const TwoObjects> pairs
   for (const TwoObjects& pair : pairs) {
     order.emplace_back(search.bound(moving.grown_box(pair.first), moving.grown_box(pair.second)), &pair);
   }
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(order.begin(), order.end());  // equal bounds stay in the order of the pairs
   for (const auto& [bound, pair] : order) {
     if (search.is_hopeless(pair->first, pair->second, bound)) continue;
     search.add(pair->first, moving.object(pair->first, context), pair->second, moving.object(pair->second, context));
