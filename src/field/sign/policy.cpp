@@ -1,16 +1,15 @@
 #include "field/sign/policy.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/core/plural.hpp"
-#include "blum/geometry/facing.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/topology.hpp"
+#include "field/sign/facing_repair.hpp"
 
 namespace blum::sign {
 namespace {
@@ -45,17 +44,6 @@ std::vector<Warning> facing_warnings(const Orientation& facts, bool crosses) {
   return warn(
       "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; "
       "topology() lists the shells");
-}
-
-/// Returns a text like "3 triangles and 1 shell were reversed".
-std::string repair_text(const detail::RepairedFacing& repaired) {
-  std::string text;
-  if (repaired.reversed_triangles > 0) text = plural(repaired.reversed_triangles, "triangle", "triangles");
-  if (repaired.reversed_shells > 0) {
-    text += (text.empty() ? "" : " and ") + plural(repaired.reversed_shells, "shell", "shells");
-  }
-  const bool is_one = repaired.reversed_triangles + repaired.reversed_shells == 1;
-  return text + (is_one ? " was reversed" : " were reversed");
 }
 
 /// Returns true if the mesh becomes outward-facing when all its triangles are reversed.
@@ -142,6 +130,10 @@ std::string reason_for_winding(const MeshView& mesh, const Orientation& facts) {
   return "";
 }
 
+void add_warnings(Plan& plan, std::vector<Warning> found) {
+  for (Warning& warning : found) plan.warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
@@ -170,18 +162,42 @@ Plan Planner::plan_oriented(const MeshView& mesh, const SiteTable& sites, const 
           .is_simple = true};
 }
 
+FacingRepair Planner::find_repair(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
+                                  const Context& context) {
+  return repair_facing(mesh, sites, facts, [&](const MeshView& turned) { return crosses(turned, context); }, context);
+}
+
 Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   const Orientation facts = orientation(mesh, sites);
-  std::optional<detail::RepairedFacing> repaired = detail::repaired_facing(mesh, sites, facts, context);
-  if (!repaired) return plan_oriented(mesh, sites, facts, context);
+  FacingRepair repair = find_repair(mesh, sites, facts, context);
+  if (repair.triangles.empty()) {
+    Plan plan = plan_oriented(mesh, sites, facts, context);
+    add_warnings(plan, std::move(repair.warnings));
+    return plan;
+  }
   MeshView own = mesh;
-  own.triangles = repaired->triangles;
+  own.triangles = repair.triangles;
   const SiteTable own_sites(own, context);
   Plan plan = plan_oriented(own, own_sites, orientation(own, own_sites), context);
-  plan.reason += ", after " + repair_text(*repaired);
-  plan.warnings = {
-      {WarningCode::facing, "parts of the mesh face the wrong way, and for the signs, " + repair_text(*repaired)}};
-  plan.triangles = std::move(repaired->triangles);
+  plan.reason += ", after " + repair.text;
+  plan.warnings = {{WarningCode::facing, "parts of the mesh face the wrong way, and for the signs, " + repair.text}};
+  add_warnings(plan, std::move(repair.warnings));
+  plan.triangles = std::move(repair.triangles);
+  return plan;
+}
+
+Plan Planner::plan_as_given(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  const Orientation facts = orientation(mesh, sites);
+  const bool is_crossing = facing_depends_on_crossings(facts) && crosses(mesh, context);
+  Plan plan = plan_by_winding(rule_requested, mesh, sites, facts, is_crossing);
+  if (!plan.warnings.empty()) return plan;
+  FacingRepair repair = find_repair(mesh, sites, facts, context);
+  if (!repair.triangles.empty()) {
+    plan.warnings = {{WarningCode::facing,
+                      "parts of the mesh face the wrong way, so signs are not those of a solid: flip their triangles, "
+                      "or use the sign mode auto"}};
+  }
+  add_warnings(plan, std::move(repair.warnings));
   return plan;
 }
 
@@ -193,9 +209,7 @@ Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, 
   }
   if (mode == SignMode::normals) return plan_normals(mesh, sites);
   if (mode == SignMode::automatic) return plan_automatically(mesh, sites, context);
-  const Orientation facts = orientation(mesh, sites);
-  const bool is_crossing = facing_depends_on_crossings(facts) && crosses(mesh, context);
-  return plan_by_winding(rule_requested, mesh, sites, facts, is_crossing);
+  return plan_as_given(mesh, sites, context);
 }
 
 Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {

@@ -14,6 +14,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "field/sign/facing_repair.hpp"
 #include "field/sign/method.hpp"
 
 namespace blum::sign {
@@ -52,20 +53,24 @@ class Planner {
   ///   of its triangles touch or cross, except neighbours (find_self_intersections, which is exact).
   /// - `winding` otherwise. The plan's reason states which condition failed first, in this order.
   ///
-  /// If a mesh is closed but parts of it face the wrong way, `automatic` first reverses these parts
-  /// (repaired_facing()), with a warning. The other modes use the mesh as it is. With `winding`, an inside-out mesh
-  /// then has no inside, because its winding numbers are negative.
+  /// If parts of a mesh face the wrong way, `automatic` first reverses these parts (repair_facing()), with a warning.
+  /// The other modes use the mesh as it is, and warn. With `winding`, an inside-out mesh then has no inside, because
+  /// its winding numbers are negative.
   ///
   /// @throws InvalidMesh if normals are requested, but the mesh is not closed and consistently oriented, or has free
   /// segments or points.
   /// @throws InvalidOption if signs are requested, but the mesh has no triangles.
   /// @throws Cancelled.
-  /// Cost: O(triangles). With `automatic`, if all other conditions of `normals` hold, also a search for triangles that
-  /// touch. The search ends at the first pair.
+  /// Cost: that of repair_facing(), and O(triangles). With `automatic`, if all other conditions of `normals` hold, also
+  /// a search for triangles that touch. The search ends at the first pair.
   [[nodiscard]] Plan plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context);
 
  private:
   [[nodiscard]] Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context);
+  /// Returns the plan of `winding`, which was requested.
+  [[nodiscard]] Plan plan_as_given(const MeshView& mesh, const SiteTable& sites, const Context& context);
+  [[nodiscard]] FacingRepair find_repair(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
+                                         const Context& context);
   /// Returns the automatic plan for a mesh that is used as it is.
   [[nodiscard]] Plan plan_oriented(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
                                    const Context& context);

@@ -125,6 +125,95 @@ TEST(SignWarnings, ClosedMeshesGetTheirInsideHoweverTrianglesFace) {
   }
 }
 
+/// Returns the mesh without common vertices of triangles.
+TriangleMesh soup_of(const TriangleMesh& mesh) {
+  TriangleMesh soup;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t v : t) soup.vertices.push_back(mesh.vertices[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+TriangleMesh half_flipped(TriangleMesh mesh, std::uint64_t seed) {
+  Random random(seed);
+  for (Triangle& t : mesh.triangles) {
+    if (random.in_cube().x < 0.5) std::swap(t[1], t[2]);
+  }
+  return mesh;
+}
+
+/// Meshes that are not closed, or whose shells cross. Each has the same distances as the mesh that faces outwards.
+std::vector<Turned> turned_unclosed_meshes() {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  const TriangleMesh across = box_between({1, 1, 1}, {2.9, 2.9, 2.9});
+  TriangleMesh sheet;
+  sheet.vertices = {{2.5, 0, 0}, {2.5, 1, 0}, {2.5, 0, 1}};
+  sheet.triangles = {{0, 1, 2}};
+  TriangleMesh lidless = box;
+  lidless.triangles.resize(10);
+  const TriangleMesh sphere = make_sphere({.frequency = 4});
+  TriangleMesh holed = sphere;
+  holed.triangles.pop_back();
+  TriangleMesh doubled = box;
+  doubled.triangles.insert(doubled.triangles.end(), box.triangles.begin(), box.triangles.end());
+  const TriangleMesh crossing = both(box, across);
+  return {{"WithoutLid", lidless, reversed(lidless), "1 part was reversed"},
+          {"SphereWithAHole", holed, reversed(holed), "1 part was reversed"},
+          {"BoxAndSheet", both(box, sheet), both(reversed(box), sheet), "1 shell was reversed"},
+          {"Doubled", doubled, reversed(doubled), "1 part was reversed"},
+          {"Soup", soup_of(sphere), soup_of(reversed(sphere)), "1 shell was reversed"},
+          {"HalfFlippedSoup", soup_of(sphere), soup_of(half_flipped(sphere, 1)), ""},
+          {"SecondOfTwoThatCross", crossing, both(box, reversed(across)), "1 shell was reversed"},
+          {"FirstOfTwoThatCross", crossing, both(reversed(box), across), "1 shell was reversed"},
+          {"BothThatCross", crossing, both(reversed(box), reversed(across)), "2 shells were reversed"},
+          {"HalfFlippedThatCross", both(sphere, across), both(half_flipped(sphere, 2), half_flipped(across, 3)), ""}};
+}
+
+TEST(SignWarnings, UnclosedAndCrossingMeshesGetTheirInside) {
+  Random random(47);
+  std::vector<Vec3d> queries(500);
+  for (Vec3d& q : queries) q = Vec3d{1, 1, 1} + random.in_cube() * 4.0 - Vec3d{2, 2, 2};
+  for (const Turned& turned : turned_unclosed_meshes()) {
+    SCOPED_TRACE(turned.name);
+    const ClosestPointQuery of_right(turned.right);
+    const ClosestPointQuery of_wrong(turned.wrong);
+    EXPECT_TRUE(of_right.warnings().empty());
+    ASSERT_EQ(of_wrong.warnings().size(), 1U);
+    EXPECT_EQ(of_wrong.warnings()[0].code, WarningCode::facing);
+    EXPECT_TRUE(of_wrong.warnings()[0].text.ends_with(turned.repair)) << of_wrong.warnings()[0].text;
+    std::size_t inside = 0;
+    for (const Vec3d& q : queries) {
+      const double distance = of_right.nearest(q).distance;
+      inside += distance < 0 ? 1 : 0;
+      ASSERT_NEAR(of_wrong.nearest(q).distance, distance, 1e-12);
+    }
+    EXPECT_GT(inside, 0U);
+    const ClosestPointQuery as_given(turned.wrong, {.sign = SignMode::winding});
+    EXPECT_FALSE(as_given.warnings().empty());
+  }
+}
+
+/// Voids, sheets and shells that cross face the right way.
+TEST(SignWarnings, AreEmptyForOpenAndCrossingSolidsWithVoids) {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  const TriangleMesh hollow = both(box, reversed(box_between({0.5, 0.5, 0.5}, {0.9, 0.9, 0.9})));
+  TriangleMesh open = hollow;
+  open.triangles.erase(open.triangles.begin());
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (const TriangleMesh& mesh :
+       {open, both(hollow, box_between({1, 1, 1}, {2.9, 2.9, 2.9})), soup_of(hollow), sheet, reversed(sheet)}) {
+    for (const SignMode sign : {SignMode::automatic, SignMode::winding}) {
+      EXPECT_TRUE(ClosestPointQuery(mesh, {.sign = sign}).warnings().empty());
+    }
+    const ClosestPointQuery automatic(mesh);
+    EXPECT_EQ(automatic.sign_reason().find("reversed"), std::string::npos);
+  }
+}
+
 TEST(FieldWarnings, AreEmptyForABox) {
   const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
   for (const SignMode sign : {SignMode::automatic, SignMode::normals, SignMode::winding, SignMode::none}) {
