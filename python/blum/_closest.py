@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Unpack
 
@@ -16,7 +16,7 @@ from ._mesh import MeshLike, MeshOrVertices, as_mesh, moved_mesh
 from ._methods import Rebuilt, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
-from ._structs import ClosestPointOptions
+from ._structs import ClosestPointOptions, ResultWarning
 from ._warn import warn_all
 
 __all__ = ["ClosestPointQuery", "ClosestPoints", "NearPrimitives", "closest_points", "winding_number"]
@@ -41,6 +41,9 @@ class ClosestPoints(Shown):
     #: Unit vector in which the distance grows: (..., 3). None unless the call asks for it, see
     #: :meth:`ClosestPointQuery.__call__`.
     gradient: FloatArray | None = None
+    sign_rule: str = field(default="none", repr=False)  #: Rule for signs: "normals", "winding" or "none".
+    sign_reason: str = field(default="", repr=False)  #: Reason for this rule, one sentence.
+    warnings: list[ResultWarning] = field(default_factory=list, repr=False)  #: Warnings about the signs.
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +131,11 @@ class ClosestPointQuery(Rebuilt):
         """Reason for this rule, one sentence."""
         return str(self._query.sign_reason)
 
+    @property
+    def warnings(self) -> list[ResultWarning]:
+        """Warnings about the signs, also issued as :class:`InputWarning`."""
+        return list(self._query.warnings)
+
     def __call__(
         self, points: Any, *, gradient: bool = False, threads: int = 0, progress: Progress = False
     ) -> ClosestPoints:
@@ -169,6 +177,9 @@ class ClosestPointQuery(Rebuilt):
             site.reshape(shape),
             triangle.reshape(shape),
             None if slopes is None else slopes.reshape((*shape, 3)),
+            self.sign_rule,
+            self.sign_reason,
+            self.warnings,
         )
 
     def within(self, points: Any, distance: Real, *, threads: int = 0, progress: Progress = False) -> NearPrimitives:

@@ -34,7 +34,7 @@ from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
 from ._methods import Rebuilt
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import FieldOptions, VoxelTopology
+from ._structs import FieldOptions, ResultWarning, VoxelTopology
 from ._warn import warn_all
 
 __all__ = ["Field", "FieldSolver", "distance_field", "read_field", "selected_voxels", "voxel_topology"]
@@ -94,11 +94,17 @@ class Field:
         self._seconds = dict(core.seconds)
         self._device, self._device_reason = str(core.device), str(core.device_reason)
         self._sign_rule, self._sign_reason = str(core.sign_rule), str(core.sign_reason)
+        self._warnings: list[ResultWarning] = list(core.warnings)
 
     def __reduce__(self) -> tuple[Any, ...]:
         stated = (self.site_ids, self.band, self.sign_rule, self.sign_reason)
         arrays = (self.distance, self.grid, self.site, self.distance2, self.site2, self.second)
-        known = {"_seconds": self._seconds, "_device": self._device, "_device_reason": self._device_reason}
+        known = {
+            "_seconds": self._seconds,
+            "_device": self._device,
+            "_device_reason": self._device_reason,
+            "_warnings": self._warnings,
+        }
         return _restored, (*arrays, *stated, self.mesh, self.source, self._space), known
 
     @property
@@ -175,6 +181,11 @@ class Field:
     def sign_reason(self) -> str:
         """Reason for the sign rule, one sentence."""
         return self._sign_reason
+
+    @property
+    def warnings(self) -> list[ResultWarning]:
+        """Warnings about the signs, also issued as :class:`InputWarning`. Files do not hold them."""
+        return list(self._warnings)
 
     @property
     def seconds(self) -> dict[str, float]:

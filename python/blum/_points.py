@@ -19,7 +19,7 @@ from ._mesh import Mesh, MeshLike, as_mesh
 from ._methods import Shown
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
+from ._structs import ClosestPointOptions, NearSampleOptions, ResultWarning, SampleOptions
 from ._warn import warn_all
 
 __all__ = ["NearSamples", "SignedDistances", "SurfaceSamples", "sample_near", "sample_surface", "signed_distance"]
@@ -46,6 +46,9 @@ class SignedDistances(Shown):
     site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
     triangle: IntArray  #: Smallest index of a triangle that contains the site. -1 if none.
     _mesh: Mesh = field(repr=False)
+    sign_rule: str = field(default="none", repr=False)  #: Rule for signs: "normals", "winding" or "none".
+    sign_reason: str = field(default="", repr=False)  #: Reason for this rule, one sentence.
+    warnings: list[ResultWarning] = field(default_factory=list, repr=False)  #: Warnings about the signs.
 
     @cached_property
     def barycentric(self) -> FloatArray:
@@ -102,6 +105,9 @@ def signed_distance(
         found.site.reshape(shape),
         found.triangle.reshape(shape),
         of,
+        found.sign_rule,
+        found.sign_reason,
+        found.warnings,
     )
 
 
@@ -180,6 +186,7 @@ class NearSamples:
     triangle: IntArray  #: Smallest index of a triangle that contains the site: (n,). -1 if none.
     sign_rule: str  #: Rule for signs: "normals", "winding" or "none".
     sign_reason: str  #: Reason for this rule, one sentence.
+    warnings: list[ResultWarning] = field(default_factory=list)  #: Warnings about the signs.
 
     def __repr__(self) -> str:
         return f"NearSamples({len(self.points):,} points)"
@@ -222,7 +229,7 @@ def sample_near(
             of._arrays, number, dict(options), integer(threads, "threads"), report
         )
     warn_all(warnings)
-    return NearSamples(points, distance, closest, site, triangle, rule, reason)
+    return NearSamples(points, distance, closest, site, triangle, rule, reason, list(warnings))
 
 
 def _count(value: Integer) -> int:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Unpack
@@ -38,6 +38,7 @@ from ._structs import (
     DirectedHausdorff,
     HausdorffDistance,
     HausdorffOptions,
+    ResultWarning,
     SurfaceDeviation,
     SurfaceMapOptions,
     SurfaceMapStatistics,
@@ -95,6 +96,8 @@ class SurfaceMap:
     seconds: dict[str, float]  #: Wall-clock seconds of each phase.
     mesh: Mesh  #: Mesh of the map.
     _handle: Any = None
+    #: Warnings about the signs, also issued as :class:`InputWarning`. Files do not hold them.
+    warnings: list[ResultWarning] = field(default_factory=list)
     _others: tuple[Mesh, ...] | None = ()
 
     def __repr__(self) -> str:
@@ -106,7 +109,7 @@ class SurfaceMap:
             path = Path(folder, "map.npz")
             self.write(path)
             file = path.read_bytes()
-        return _restored, (file, self.mesh, self._others, self.sign_reason, self.seconds)
+        return _restored, (file, self.mesh, self._others, self.sign_reason, self.seconds, self.warnings)
 
     @property
     def texture_coordinates(self) -> FloatArray:
@@ -177,14 +180,19 @@ class SurfaceMap:
 
 
 def _restored(
-    file: bytes, mesh: Mesh, others: tuple[Mesh, ...] | None, sign_reason: str, seconds: dict[str, float]
+    file: bytes,
+    mesh: Mesh,
+    others: tuple[Mesh, ...] | None,
+    sign_reason: str,
+    seconds: dict[str, float],
+    warnings: list[ResultWarning],
 ) -> SurfaceMap:
     with tempfile.TemporaryDirectory(prefix="blum-") as folder:
         path = Path(folder, "map.npz")
         path.write_bytes(file)
         _, found = _core.read_surface_map(path)
-    del found["warnings"]
-    return SurfaceMap(**{**found, "sign_reason": sign_reason, "seconds": seconds}, mesh=mesh, _others=others)
+    known = {"sign_reason": sign_reason, "seconds": seconds, "warnings": warnings}
+    return SurfaceMap(**{**found, **known}, mesh=mesh, _others=others)
 
 
 def read_surface_map(path: PathLike) -> SurfaceMap:
@@ -383,7 +391,8 @@ class SurfaceMapper(Rebuilt):
 
 def _map(found: dict[str, Any], mesh: Mesh, others: tuple[Mesh, ...] | None = ()) -> SurfaceMap:
     """Returns a map of the library, and issues its warnings."""
-    warn_all(found.pop("warnings"))
+    found["warnings"] = list(found["warnings"])
+    warn_all(found["warnings"])
     return SurfaceMap(**found, mesh=mesh, _others=others)
 
 

@@ -1,5 +1,7 @@
 """Proves the package's signed distances with gradients, winding numbers, near primitives and surface samples."""
 
+import pickle
+
 import blum
 import numpy as np
 import pytest
@@ -197,3 +199,39 @@ def test_distances_of_a_reversed_mesh_cause_a_warning():
     assert near.sign_rule == "normals" and "faces outwards" in near.sign_reason
     with pytest.warns(blum.InputWarning, match="inside out"):
         assert blum.signed_distance(inside_out, [[0, 0, 0]], sign="winding").distance[0] > 0
+
+
+def test_signed_results_carry_rule_reason_and_warnings():
+    """A box inside out: every signed result names its rule, its reason and the repair, also after pickling."""
+    box = blum.generate("box")
+    inwards = blum.Mesh(box.vertices, box.triangles[:, ::-1])
+    with pytest.warns(blum.InputWarning, match="1 shell was reversed"):
+        query = blum.ClosestPointQuery(inwards)
+        found = {
+            "query": query,
+            "query(p)": query([[0, 0, 0]]),
+            "closest_points": blum.closest_points(inwards, [[0, 0, 0]]),
+            "signed_distance": blum.signed_distance(inwards, [[0, 0, 0]]),
+            "sample_near": blum.sample_near(inwards, 5),
+            "distance_field": blum.distance_field(inwards, resolution=8),
+            "surface_distance_map": blum.surface_distance_map(box, inwards, texel=0.5, sign="auto"),
+        }
+    for name, result in found.items():
+        for each in (result, pickle.loads(pickle.dumps(result))):
+            assert each.sign_rule == "normals", name
+            assert each.sign_reason.endswith("after 1 shell was reversed"), name
+            assert [warning.text.endswith("1 shell was reversed") for warning in each.warnings] == [True], name
+    assert blum.signed_distance(box, [[0, 0, 0]]).warnings == []
+
+
+def test_open_boxes_that_face_inwards_have_an_inside():
+    """A box without lid: its distances are those of the box that faces outwards, with a warning."""
+    box = blum.generate("box")
+    lidless = box.triangles[:10]
+    point = [[0.1, 0.0, 0.0]]
+    right = blum.signed_distance((box.vertices, lidless), point)
+    with pytest.warns(blum.InputWarning, match="1 part was reversed"):
+        wrong = blum.signed_distance((box.vertices, lidless[:, ::-1]), point)
+    assert right.warnings == []
+    assert right.distance[0] < 0
+    np.testing.assert_array_equal(wrong.distance, right.distance)
