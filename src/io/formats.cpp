@@ -13,6 +13,7 @@
 #include "io/bytes/byte_source.hpp"
 #include "io/field/field_files.hpp"
 #include "io/format_table.hpp"
+#include "io/mesh/mesh_stl.hpp"
 #include "io/text/text_cursor.hpp"
 
 namespace blum {
@@ -59,6 +60,12 @@ std::size_t find_named(FileContent content, std::string_view name) {
   }
   throw InvalidOption("there is no format '" + std::string(name) + "' for files with the content '" +
                       std::string(to_string(content)) + "'; the formats are " + known);
+}
+
+/// Returns the way round for a pipe without an extension; an empty text for other files.
+std::string advice_for_pipe(const std::filesystem::path& path) {
+  if (path != "-" && !is_pipe(path)) return "";
+  return "; for standard input, give a link to /dev/stdin whose name has such an extension (`ln -s /dev/stdin NAME`)";
 }
 
 std::optional<std::size_t> find_head(FileContent content, std::string_view head) {
@@ -113,7 +120,8 @@ FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileA
                       (access == FileAccess::read    ? "read from "
                        : access == FileAccess::write ? "written to "
                                                      : "written to and read from ") +
-                      extension_list(content, access, ", ") + " files; use one of these extensions");
+                      extension_list(content, access, ", ") + " files; use one of these extensions" +
+                      (access == FileAccess::read ? advice_for_pipe(path) : ""));
 }
 
 template class FormatOf<FileContent::mesh>;
@@ -193,6 +201,12 @@ bool holds(const std::optional<Format>& format, const fs::path& path, std::strin
 
 }  // namespace
 
+std::optional<MeshFormat> mesh_format_by_content(const fs::path& path, std::string_view head) {
+  // The number of triangles in a binary STL file gives its size. It has no other mark.
+  if (volume_io::is_binary_stl(head, count_file_bytes(path))) return MeshFormat("STL");
+  return MeshFormat::by_head(head);
+}
+
 FileContent content_of(const fs::path& path) {
   const std::string head = read_head(path);
   if (MeshFormat::by_name(path)) return FileContent::mesh;
@@ -201,7 +215,7 @@ FileContent content_of(const fs::path& path) {
   if (ImageFormat::by_name(path)) return FileContent::image;
   if (holds(FieldFormat::by_head(head), path, head)) return FileContent::field;
   if (ImageFormat::by_head(head)) return FileContent::image;
-  if (MeshFormat::by_head(head)) return FileContent::mesh;
+  if (mesh_format_by_content(path, head)) return FileContent::mesh;
   std::string known;
   for (const auto& [content, what] :
        {std::pair{FileContent::mesh, "meshes are "}, std::pair{FileContent::image, "images "},
@@ -224,7 +238,7 @@ bool may_hold_field(const fs::path& path) {
 
 MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& options) {
   if (MeshFormat::by_name(path)) return read_mesh_file(path, options);
-  const auto format = MeshFormat::by_head(read_head(path));
+  const auto format = mesh_format_by_content(path, read_head(path));
   if (!format) return read_mesh_file(path, options);  // throws the appropriate error
   return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
 }

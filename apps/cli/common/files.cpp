@@ -131,13 +131,27 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
       }
     }
   }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::error_code error;
+    if (!fs::is_fifo(inputs[i], error)) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!same_file(inputs[i], inputs[j])) continue;
+      throw UsageError("'" + inputs[i].string() +
+                       "' is a pipe and is given twice, but it can be read only once; write it to a file");
+    }
+  }
   for (const fs::path& output : outputs) check_writable(output);
 }
 
 void check_extension(std::string_view option, const fs::path& path, const std::vector<std::string>& known) {
   if (path.empty()) throw UsageError(std::string(option) + " needs a file name");
   if (std::find(known.begin(), known.end(), file_extension(path)) != known.end()) return;
-  throw UsageError(std::string(option) + " '" + path.string() + "': the extension must be " + join_words(known, "or"));
+  std::error_code error;
+  const bool is_input = !option.starts_with("--");
+  throw UsageError(std::string(option) + " '" + path.string() + "': the extension must be " + join_words(known, "or") +
+                   (is_input && (path == "-" || fs::is_fifo(path, error))
+                        ? "; for standard input, give a link to /dev/stdin with this extension"
+                        : ""));
 }
 
 void check_memory(double bytes, std::string_view what, std::string_view advice) {

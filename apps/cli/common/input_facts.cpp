@@ -104,10 +104,14 @@ std::string type_name(const VoxelImage::Values& values) {
   return names.at(values.index());
 }
 
-Json image_json(const std::filesystem::path& path, const VoxelImage& image) {
+std::string format_name(const std::optional<ImageFormat>& format) {
+  return format ? std::string(format->name()) : "unknown";
+}
+
+Json image_json(const std::filesystem::path& path, const VoxelImage& image, const std::optional<ImageFormat>& format) {
   Json json = {{"path", path.string()},
                {"kind", "image"},
-               {"format", image_format_name(path)},
+               {"format", format_name(format)},
                {"type", type_name(image.values)},
                {"voxels", image.grid.node_count()}};
   json["grid"] = to_json(image.grid);
@@ -116,10 +120,11 @@ Json image_json(const std::filesystem::path& path, const VoxelImage& image) {
   return json;
 }
 
-TextTable image_table(const std::filesystem::path& path, const VoxelImage& image) {
+TextTable image_table(const std::filesystem::path& path, const VoxelImage& image,
+                      const std::optional<ImageFormat>& format) {
   TextTable table;
-  table.add("input", path.string() + ": " + std::string(image_format_name(path)) + " image, " + size_text(image.grid) +
-                         " voxels of " + type_name(image.values));
+  table.add("input", path.string() + ": " + format_name(format) + " image, " + size_text(image.grid) + " voxels of " +
+                         type_name(image.values));
   return table;
 }
 

@@ -33,8 +33,12 @@ namespace blum::cli {
                                    const Orientation& facts);
 
 /// Returns the file, format, value type and grid of an image as JSON.
-[[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
-[[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image);
+/// Returns the name of a format; "unknown" if there is none.
+[[nodiscard]] std::string format_name(const std::optional<ImageFormat>& format);
+[[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image,
+                              const std::optional<ImageFormat>& format);
+[[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image,
+                                    const std::optional<ImageFormat>& format);
 /// Rounds labels that are nearly whole numbers, and adds the warning about it.
 /// @param labels  labels that are asked for; empty: all. @throws InvalidImage as rounded_labels().
 void round_labels(ImageFile& file, std::span<const std::int64_t> labels, const Context& context = {});

@@ -17,12 +17,12 @@ namespace blum::cli {
 
 SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld,
                       std::span<const std::int64_t> labels) {
+  const Unattended reading;  // the wait for the writer of a pipe, too
   SolidInput input;
   input.kind = input_kind(path);
   if (input.kind == InputKind::field) {
     throw FileError("'" + path.string() + "' is a field; a mesh or a voxel image is needed here");
   }
-  const Unattended reading;
   if (input.kind == InputKind::mesh) {
     input.mesh = read_mesh_of_any_name(path, {weld, true});
     const MeshView mesh = input.mesh.mesh;
@@ -44,8 +44,8 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
   if (has_only_nan(input.image)) {
     throw FileError("'" + path.string() + "': every voxel is NaN (not a number), so none can be selected");
   }
-  input.json = image_json(path, input.image);
-  input.table = image_table(path, input.image);
+  input.json = image_json(path, input.image, file.format);
+  input.table = image_table(path, input.image, file.format);
   return input;
 }
 

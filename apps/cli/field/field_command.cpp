@@ -382,8 +382,8 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   }
   if (!r.selections.labels.empty()) round_labels(file, r.selections.labels, context);
   run.warnings = file.warnings;
-  run.input = image_json(r.input, image);
-  run.input_table = image_table(r.input, image);
+  run.input = image_json(r.input, image, file.format);
+  run.input_table = image_table(r.input, image, file.format);
   run.time("input facts", watch.lap());
   const std::vector<LabelSelection> selections = r.selections.all();
   check_field_memory(image.grid, selections.size(), r.options.sites ? 8 : 4);

@@ -132,6 +132,38 @@ void number_walls(Complex& complex) {
 namespace {
 
 constexpr const char* centrelines = "centreline";
+constexpr const char* extended_axis = "extended medial axis";
+constexpr const char* thickness = "thickness";  // column of extended axes: twice the radius
+
+/// Returns true if files with this content have only cells to show. Their columns are not shown.
+bool is_plain_content(std::string_view content) {
+  return content == "points" || content == "surface map" || content == "witnesses";
+}
+
+bool has_thickness(const Complex& complex) {
+  return complex.vertex_columns.find(thickness) != nullptr &&
+         complex.triangle_columns.find(medial_columns::sheet) != nullptr;
+}
+
+/// Returns the parts of a file that are shown for any content but a medial axis.
+ShownAxis shown_complex(ComplexFile&& file, const std::string& content) {
+  ShownAxis out;
+  out.content = content;
+  out.is_axis = false;
+  out.is_plain = is_plain_content(content);
+  out.file.complex = std::move(file.complex);
+  out.file.metadata.source = text_of(file.metadata, "source");
+  return out;
+}
+
+/// Adds radii, which are half of the thicknesses.
+void add_radii(Complex& complex) {
+  const auto thick = complex.vertex_columns.get<double>(thickness);
+  const std::vector<double> whole(thick.begin(), thick.end());
+  add_missing_medial_columns(complex);
+  const auto radius = complex.vertex_columns.edit<double>(medial_columns::radius);
+  std::transform(whole.begin(), whole.end(), radius.begin(), [](double value) { return value / 2; });
+}
 
 /// Returns true if a complex has the columns of a Voronoi diagram that are read here.
 bool has_walls(const Complex& complex) {
@@ -156,7 +188,9 @@ std::size_t branch_count(const Complex& complex) {
 }  // namespace
 
 const char* cells_label(const ShownAxis& shown) {
-  return shown.is_axis ? "axis" : shown.content == centrelines ? "curves" : "walls";
+  if (shown.is_axis || shown.content == extended_axis) return "axis";
+  if (shown.is_plain) return "cells";
+  return shown.content == centrelines ? "curves" : "walls";
 }
 
 std::string cells_text(const ShownAxis& shown) {
@@ -167,8 +201,12 @@ std::string cells_text(const ShownAxis& shown) {
     return vertices + plural(complex.edges.size(), "edge", "edges") + "; " +
            plural(branch_count(complex), "branch", "branches");
   }
-  return vertices + plural(complex.triangles.size(), "triangle", "triangles") + " between " +
-         plural(sheet_count(complex), "pair", "pairs") + " of sites";
+  const std::string triangles = plural(complex.triangles.size(), "triangle", "triangles");
+  if (shown.content == extended_axis) {
+    return vertices + triangles + " in " + plural(sheet_count(complex), "sheet", "sheets");
+  }
+  if (shown.is_plain) return vertices + plural(complex.edges.size(), "edge", "edges") + ", " + triangles;
+  return vertices + triangles + " between " + plural(sheet_count(complex), "pair", "pairs") + " of sites";
 }
 
 namespace {
@@ -192,25 +230,37 @@ ShownAxis read_axis_or_curves(const std::filesystem::path& path) {
     ComplexFile file = read_complex(path);
     const std::string content = text_of(file.metadata, "content");
     const bool is_diagram = content.ends_with("Voronoi diagram") && has_walls(file.complex);
+    if (content == extended_axis && has_thickness(file.complex)) {
+      ShownAxis out = shown_complex(std::move(file), content);
+      out.file.has_radii = out.file.has_labels = true;
+      add_radii(out.file.complex);
+      return out;
+    }
+    if (is_plain_content(content)) {
+      ShownAxis out = shown_complex(std::move(file), content);
+      add_missing_medial_columns(out.file.complex);
+      return out;
+    }
     if (is_diagram || (content == centrelines && has_branches(file.complex))) {
-      ShownAxis out;
-      out.content = content;
-      out.is_axis = false;
-      out.file.complex = std::move(file.complex);
-      out.file.metadata.source = text_of(file.metadata, "source");
+      const FileMetadata metadata = file.metadata;
+      ShownAxis out = shown_complex(std::move(file), content);
       out.file.has_radii = true;
       out.file.has_footprints = out.file.has_sites = out.file.has_angles = is_diagram;
       add_missing_medial_columns(out.file.complex);
       if (is_diagram) {
-        add_certified(file.metadata, out);
+        add_certified(metadata, out);
         number_walls(out.file.complex);
       } else {
         out.file.metadata.site_ids = SiteIds::voxels;
       }
       return out;
     }
+    // The file is not read again, because it may be a pipe.
+    ShownAxis out{read_medial(file, path.string()), "medial axis", true, false, {}, ""};
+    add_missing_medial_columns(out.file.complex);
+    return out;
   }
-  return {read_axis(path), "medial axis", true, {}, ""};
+  return {read_axis(path), "medial axis", true, false, {}, ""};
 }
 
 SolidVerifier::SolidVerifier(const SolidInput& input) {

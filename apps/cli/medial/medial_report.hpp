@@ -22,15 +22,17 @@ namespace blum::cli {
 /// Content of a file with a medial axis, with walls of a Voronoi diagram, or with centrelines.
 struct ShownAxis {
   MedialFile file;      ///< for diagrams, walls between the same two sites form one sheet
-  std::string content;  ///< name of the content in the metadata: "medial axis", "Voronoi diagram" or "centreline"
+  std::string content;  ///< name of the content in the metadata: "medial axis", "Voronoi diagram", "points", ...
   bool is_axis = true;
+  bool is_plain = false;             ///< the content is only cells: points, witnesses or a surface map
   std::optional<bool> is_certified;  ///< set only for diagrams whose file records it
   std::string certified;             ///< certificate as text; empty if the file records none
 };
-/// Reads a medial axis as read_axis() does, walls written by `blum voronoi`, or curves written by `blum centreline`.
+/// Reads a medial axis as read_axis() does, an axis extended by `blum medial --extend`, walls written by `blum
+/// voronoi`, curves written by `blum centreline`. Also reads points, witnesses and surface maps, without columns.
 [[nodiscard]] ShownAxis read_axis_or_curves(const std::filesystem::path& path);
 
-/// Returns the label of cells_text(): "axis", "walls" or "curves".
+/// Returns the label of cells_text(): "axis", "walls", "curves" or "cells".
 [[nodiscard]] const char* cells_label(const ShownAxis& shown);
 /// Returns the counts of the cells as text.
 [[nodiscard]] std::string cells_text(const ShownAxis& shown);

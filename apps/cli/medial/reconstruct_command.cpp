@@ -97,6 +97,7 @@ std::vector<Ball> balls_of(const MedialFile& file, double step) {
 }
 
 MedialFile read_balls(const fs::path& path) {
+  const Unattended reading;
   MedialFile file = read_axis(path);
   if (!file.has_radii) {
     throw FileError("'" + path.string() + "' contains no radii; use a " + join_words(extensions_with_radii(), "or") +
@@ -141,7 +142,10 @@ void run(const Arguments& a) {
   std::vector<Warning> warnings;
   // Reading the input may fail, so it is read before anything is written.
   if (r.input) {
-    const InputKind kind = input_kind(*r.input);
+    const InputKind kind = [&] {
+      const Unattended reading;
+      return input_kind(*r.input);
+    }();
     const auto [selection, found] = solid_of_axis(r.given, kind, file.metadata, r.axis);
     warnings = found;
     const SolidInput input = load_solid(*r.input, selection.weld, labels_of(selection));

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -67,7 +68,10 @@ class Verifier {
       : path_(std::move(path)), kind_(kind), given_(given), smooth_(smooth), context_(context) {}
 
   void verify(const fs::path& axis) {
-    MedialFile file = read_axis(axis);
+    MedialFile file = [&] {
+      const Unattended reading;
+      return read_axis(axis);
+    }();
     if (smooth_ && !file.metadata.smooth) file.metadata.smooth = SmoothSurfaceOptions{}.iterations;
     auto [selection, warnings] = solid_of_axis(given_, kind_, file.metadata, axis);
     const SolidInput& solid = load(selection.weld, labels_of(selection));
@@ -133,6 +137,12 @@ class Verifier {
   /// Returns the mesh or image. Reads the file again only if an axis needs another weld tolerance or label.
   const SolidInput& load(const std::optional<double>& weld, const std::vector<std::int64_t>& labels) {
     if (!solid_ || weld != weld_ || labels != labels_) {
+      std::error_code error;
+      if (solid_ && fs::is_fifo(path_, error)) {
+        throw FileError("'" + path_.string() +
+                        "' is a pipe and can be read only once, but these axes need it with different options; write "
+                        "it to a file");
+      }
       verifier_.reset();
       solid_ = load_solid(path_, weld, labels);
       verifier_.emplace(*solid_);
@@ -162,11 +172,11 @@ void run(const Arguments& a) {
   const std::vector<fs::path> axes(a.axes.begin(), a.axes.end());
   for (const fs::path& axis : axes)
     check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::read));
-  const InputKind kind = input_kind(path);
-  const SolidSelection given = solid_of_options(a, kind);
   std::vector<fs::path> inputs = axes;
   inputs.push_back(path);
   check_outputs(a.report.files(), inputs);
+  const InputKind kind = input_kind(path);
+  const SolidSelection given = solid_of_options(a, kind);
   Progress progress(!a.report.quiet);
   const Interrupt interrupt;
   const Context context = make_context(parse_threads(a.threads), progress, interrupt);

@@ -114,7 +114,10 @@ std::vector<PointFile> files_of(const Arguments& a) {
     file.output += file.points.stem();
     file.output += output.extension();
     // All files are checked first. If an error came later, the outputs of earlier files would already exist.
-    if (!fs::exists(file.points)) throw FileError("cannot read '" + name + "': there is no such file");
+    if (!fs::exists(file.points)) {
+      throw FileError("cannot read '" + name + "': there is no such file" +
+                      (name == "-" ? "; for standard input, give the name /dev/stdin" : ""));
+    }
   }
   std::vector<fs::path> outputs = a.report.files();
   std::vector<fs::path> inputs{a.mesh};

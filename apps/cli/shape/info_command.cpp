@@ -307,12 +307,12 @@ void run_image(const Arguments& a) {
   round_labels(file, {}, context);
   const ImageValues values = image_values(image, label_limit, context);
   progress.clear();
-  Json json = image_json(a.input, image);
+  Json json = image_json(a.input, image, file.format);
   json.update(to_json(values));
   json["warnings"] = to_json(file.warnings);
 
   TextTable table;
-  table.add("file", a.input + ": " + std::string(image_format_name(a.input)) + " image of " + type_name(image.values));
+  table.add("file", a.input + ": " + format_name(file.format) + " image of " + type_name(image.values));
   add_grid(table, image.grid);
   if (!image.space.empty()) table.add("world axes", image.space);
   table.add("range",

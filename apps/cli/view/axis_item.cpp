@@ -8,7 +8,6 @@
 
 #include "blum/complex/homology.hpp"
 #include "blum/io/medial_io.hpp"
-#include "medial/medial_report.hpp"
 
 namespace blum::cli {
 namespace {
@@ -96,8 +95,7 @@ void add_facts(Json& item, const ShownAxis& shown, const BettiNumbers& betti) {
 
 }  // namespace
 
-Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context& context) {
-  const ShownAxis read = read_axis_or_curves(path);
+Json axis_item(SceneBlob& blob, const ShownAxis& read, const Context& context) {
   const MedialFile& file = read.file;
   Box3 box;
   for (const Vec3d& position : file.complex.positions) box.extend(position);

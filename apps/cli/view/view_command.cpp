@@ -48,11 +48,14 @@ void check(const Arguments& a) {
   exclude(a.output.has_value(), "--output", a.open, "--open", "only a served page is opened");
   if (a.frames && a.inputs.size() < 2) throw UsageError("--frames needs at least two meshes, in their order");
   if (a.pairs && !a.frames) throw UsageError("--pairs needs --frames");
-  if (!a.output) return;
-  check_extension("--output", *a.output, {".html", ".htm"});
+  std::vector<std::filesystem::path> outputs;
+  if (a.output) {
+    check_extension("--output", *a.output, {".html", ".htm"});
+    outputs.emplace_back(*a.output);
+  }
   std::vector<std::filesystem::path> inputs(a.inputs.begin(), a.inputs.end());
   if (a.pairs) inputs.emplace_back(*a.pairs);
-  check_outputs({*a.output}, inputs);
+  check_outputs(outputs, inputs);
 }
 
 /// Opens a page in the desktop's browser. If there is no browser, users can still open the address printed on the
@@ -68,7 +71,7 @@ void open_browser(const std::string& url) {
 }
 
 std::string kind_text(const Json& item) {
-  if (item["kind"].text() == "axis") return item["content"].text();
+  if (item["kind"].text() == "axis" || item["kind"].text() == "mesh") return item["content"].text();
   if (item["kind"].text() == "map") return "surface map";
   if (item["kind"].text() == "frames") return std::to_string(item["frames"].size()) + " frames";
   return item["kind"].text();
@@ -118,7 +121,8 @@ void add_view_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
       line.app.add_subcommand("view", "Show files in a browser: meshes, images, fields, medial axes, surface maps");
-  command.add_option("FILE", a->inputs, "Meshes, images, fields, medial axes and surface maps (.npz), in any mixture")
+  command
+      .add_option("FILE", a->inputs, "Meshes, images, fields, medial axes, diagrams and surface maps, in any mixture")
       .required();
   add_text_option(command, "-o,--output", a->output, "HTML",
                   "Write the page with its data to a file, instead of serving it");

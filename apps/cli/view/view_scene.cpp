@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -33,16 +34,14 @@ void check_size(std::size_t count, std::size_t most, const char* what, const fs:
                   count_text(most) + "; " + advice);
 }
 
-Json mesh_item(SceneBlob& blob, const fs::path& path, std::optional<double> weld) {
-  const MeshFile file = read_mesh_of_any_name(path, {weld});
-  const TriangleMesh& mesh = file.mesh;
+Json mesh_item(SceneBlob& blob, const fs::path& path, const TriangleMesh& mesh) {
   validate(mesh);
   check_size(mesh.triangles.size(), most_triangles_shown, "triangles", path, "show a coarser mesh");
   const SiteTable sites(mesh);
   const Orientation facts = orientation(mesh, sites);
   const Box3 box = bounds(mesh);
   const Vec3d origin = box.is_empty() ? Vec3d{} : box.center();
-  Json item = {{"kind", "mesh"}, {"units", "mesh units"}};
+  Json item = {{"kind", "mesh"}, {"content", "mesh"}, {"units", "mesh units"}};
   item["origin"] = to_json(origin);
   item["bounds"] = to_json(box);
   item["counts"] = {
@@ -63,6 +62,27 @@ Json mesh_item(SceneBlob& blob, const fs::path& path, std::optional<double> weld
     if (facts.closed && facts.oriented) list.push_back(fact("volume", rounded_text(facts.signed_volume)));
   }
   return item;
+}
+
+/// Adds a complex without its columns. Vertices are points if there are no other cells.
+Json plain_item(SceneBlob& blob, const fs::path& path, const ShownAxis& shown) {
+  const Complex& complex = shown.file.complex;
+  TriangleMesh mesh{complex.positions, complex.triangles, {}, {}};
+  mesh.segments.assign(complex.edges.begin(), complex.edges.end());
+  if (mesh.triangles.empty() && mesh.segments.empty()) {
+    mesh.points.resize(mesh.vertices.size());
+    std::iota(mesh.points.begin(), mesh.points.end(), 0U);
+  }
+  Json item = mesh_item(blob, path, mesh);
+  item["content"] = shown.content;
+  item["facts"].push_back(fact("content", shown.content));
+  return item;
+}
+
+/// Adds a complex: a medial axis, walls, curves or plain cells.
+Json complex_item(SceneBlob& blob, const fs::path& path, const Context& context) {
+  const ShownAxis shown = read_axis_or_curves(path);
+  return shown.is_plain ? plain_item(blob, path, shown) : axis_item(blob, shown, context);
 }
 
 Json grid_facts(const GridSpec& grid) {
@@ -188,10 +208,10 @@ bool is_site_file(const fs::path& path) {
 
 Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, const Context& context) {
   if (holds_surface_map(path)) return map_item(blob, path);
-  if (holds_complex(path)) return axis_item(blob, path, context);
+  if (holds_complex(path)) return complex_item(blob, path, context);
   switch (is_site_file(path) ? InputKind::image : input_kind(path)) {
     case InputKind::mesh:
-      return mesh_item(blob, path, weld);
+      return mesh_item(blob, path, read_mesh_of_any_name(path, {weld}).mesh);
     case InputKind::image:
       return image_item(blob, path);
     case InputKind::field:
@@ -224,6 +244,10 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
         message +=
             "; pairs are shown with the frames of a moving object: `blum proximity QUERY FRAME... --frames --self -o "
             "PAIRS.json`, then `blum view FRAME... --frames --pairs PAIRS.json`";
+      } else if (message.find("the metadata state the content '") != std::string::npos) {
+        message +=
+            "; `blum view` shows meshes, images, fields, medial axes and extended ones, Voronoi diagrams, centrelines, "
+            "points and surface maps";
       }
     }
     scene.problems.push_back(message);

@@ -15,13 +15,14 @@ namespace blum {
 
 /// Returns the kind of content of a file. The extension decides, or the first bytes if the extension is not known. An
 /// .nrrd file is a field if it states that Blum wrote it as a field, else an image. An .npz file is a field unless it
-/// is a complex (see holds_complex()). Files of .ply and .obj are meshes.
+/// is a complex (see holds_complex()). Files of .ply and .obj are meshes. A pipe is read, and its bytes are kept until
+/// they are read as a whole.
 /// @throws FileError if the file cannot be opened, is a directory or has no known content.
 [[nodiscard]] FileContent content_of(const std::filesystem::path& path);
 
 /// Returns true if a file holds a medial axis or another complex. It returns true for every .vtp and .ma file, and for
 /// an .npz file with vertices and without distances. It returns true for a .ply file only if the file states that it is
-/// a medial axis. It returns false for .obj files, because they cannot state this.
+/// a medial axis, a Voronoi diagram or a centreline. It returns false for .obj files, because they cannot state this.
 /// @throws FileError if the file cannot be opened or is a directory.
 [[nodiscard]] bool holds_complex(const std::filesystem::path& path);
 
@@ -35,7 +36,8 @@ namespace blum {
 [[nodiscard]] MeshFile read_mesh_of_any_name(const std::filesystem::path& path, const MeshReadOptions& options = {});
 [[nodiscard]] ImageFile read_image_of_any_name(const std::filesystem::path& path);
 
-/// Returns the name of an image's format: "NRRD", "NIfTI", "NPY", "Vol", or "unknown".
+/// Returns the name of an image's format: "NRRD", "NIfTI", "NPY", "Vol", or "unknown". It opens the file, so it must
+/// not be called after a pipe was read. ImageFile::format is the format of an image that was read.
 [[nodiscard]] std::string_view image_format_name(const std::filesystem::path& path);
 
 /// Returns the paths of all files of a field that is written to a path. If the path is NAME.nrrd, the sites are in

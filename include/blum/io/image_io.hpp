@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct ImageFile {
   /// The frames (positions of voxels) that the file states disagree, or one of them cannot be used. Each warning names
   /// both frames, and the one that the image has (WarningCode::left_out).
   std::vector<Warning> warnings = {};
+  std::optional<ImageFormat> format = {};  ///< format of the file; readers always set it
 };
 
 /// Reads a 3D image of scalars. Values keep the type that they have in the file, with the exceptions below. Spacing,

@@ -18,6 +18,8 @@
 
 namespace blum {
 
+struct ComplexFile;
+
 /// Content of a file of a medial axis.
 struct MedialFile {
   Complex complex;  ///< with the columns of MedialView that the file holds; CompleteAxis adds the others
@@ -79,6 +81,9 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// @throws FormatError with the file and the reason.
 /// @throws InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
+/// Makes a medial axis from the content of a file that read_complex() has read. `name` is its name, for messages.
+/// @throws FormatError with the name and the reason.
+[[nodiscard]] MedialFile read_medial(const ComplexFile& file, const std::string& name);
 /// Reads a medial axis from memory. In messages, `name` is used as the name of the file.
 [[nodiscard]] MedialFile read_medial(std::span<const std::byte> bytes, ComplexFormat format,
                                      const std::string& name = "medial axis");

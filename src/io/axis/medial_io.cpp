@@ -149,6 +149,10 @@ MedialFile read_medial(const std::filesystem::path& path) {
   return checked(path.string(), [&] { return as_axis(read_complex(path), path.string()); });
 }
 
+MedialFile read_medial(const ComplexFile& file, const std::string& name) {
+  return checked(name, [&] { return as_axis(file, name); });
+}
+
 MedialFile read_medial(std::span<const std::byte> bytes, ComplexFormat format, const std::string& name) {
   return checked(name, [&] { return as_axis(read_complex(bytes, format, name), name); });
 }

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -26,30 +27,6 @@ void ByteSource::check_range(std::uint64_t offset, std::size_t count) const {
     throw FormatError(name_ + ": the file has " + std::to_string(size()) + " bytes, but " + std::to_string(count) +
                       " bytes that begin at byte " + std::to_string(offset) + " are needed; the file is cut short");
   }
-}
-
-FileSource::FileSource(const std::filesystem::path& path) : ByteSource(path.string()) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    throw FileError("cannot read '" + name() + "': " + (error ? error.message() : "there is no such file"));
-  }
-  if (std::filesystem::is_fifo(status)) {
-    throw FileError("cannot read '" + name() + "': it is a pipe, and this format is read in parts; write it to a file");
-  }
-  if (!std::filesystem::is_regular_file(status)) throw FileError("cannot read '" + name() + "': it is not a file");
-  size_ = std::filesystem::file_size(path, error);
-  if (error) throw FileError("cannot read '" + name() + "': " + error.message());
-  stream_.open(path, std::ios::binary);
-  if (!stream_) throw FileError("cannot open '" + name() + "' for reading; check its permissions");
-}
-
-void FileSource::read(std::uint64_t offset, std::span<std::byte> out) const {
-  check_range(offset, out.size());
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(offset));
-  stream_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
-  if (!stream_) throw FileError("cannot read '" + name() + "': the system gave fewer bytes than the file has");
 }
 
 void MemorySource::read(std::uint64_t offset, std::span<std::byte> out) const {
@@ -112,7 +89,14 @@ struct Descriptor {
   }
 };
 
+/// Returns the reason why a path without a file cannot be read.
+std::string missing_text(const std::filesystem::path& path) {
+  if (path == "-") return "there is no file of this name; for standard input, give the name /dev/stdin";
+  return std::generic_category().message(ENOENT);
+}
+
 [[noreturn]] void fail(const std::filesystem::path& path, int error) {
+  if (error == ENOENT) throw FileError("cannot read '" + path.string() + "': " + missing_text(path));
   throw FileError("cannot read '" + path.string() + "': " + std::generic_category().message(error));
 }
 
@@ -180,31 +164,32 @@ std::string text_head(std::span<const std::byte> bytes, std::size_t size) {
   return {reinterpret_cast<const char*>(bytes.data()), std::min(size, bytes.size())};
 }
 
-/// Content of pipes whose first bytes were requested, until all of their bytes are.
+/// Content of pipes that were read, but whose bytes are still needed.
 class KeptPipes {
  public:
-  /// Returns the first bytes of a pipe. The pipe is read now if its content is not kept yet.
-  [[nodiscard]] std::string head(const PipeKey& key, const std::filesystem::path& path, std::size_t size) {
+  /// Returns the content of a pipe, and keeps it. The pipe is read now if its content is not kept yet.
+  [[nodiscard]] std::shared_ptr<const FileBytes> keep(const PipeKey& key, const std::filesystem::path& path) {
     {
       const std::scoped_lock lock(mutex_);
-      if (const auto at = pipes_.find(key); at != pipes_.end()) return text_head(at->second.span(), size);
+      if (const auto at = pipes_.find(key); at != pipes_.end()) return at->second;
     }
-    FileBytes bytes = read_all(path);  // outside the lock, because it may wait for a writer
+    auto bytes = std::make_shared<FileBytes>(read_all(path));  // outside the lock, because it may wait for a writer
     const std::scoped_lock lock(mutex_);
-    return text_head(pipes_.emplace(key, std::move(bytes)).first->second.span(), size);
+    return pipes_.emplace(key, std::move(bytes)).first->second;
   }
-  [[nodiscard]] std::optional<FileBytes> take(const PipeKey& key) {
+  /// Returns the content of a pipe if it is kept, and does not keep it any more.
+  [[nodiscard]] std::shared_ptr<FileBytes> take(const PipeKey& key) {
     const std::scoped_lock lock(mutex_);
     const auto at = pipes_.find(key);
-    if (at == pipes_.end()) return std::nullopt;
-    FileBytes bytes = std::move(at->second);
+    if (at == pipes_.end()) return nullptr;
+    std::shared_ptr<FileBytes> bytes = std::move(at->second);
     pipes_.erase(at);
     return bytes;
   }
 
  private:
   std::mutex mutex_;
-  std::map<PipeKey, FileBytes> pipes_;
+  std::map<PipeKey, std::shared_ptr<FileBytes>> pipes_;
 };
 
 KeptPipes& kept_pipes() {
@@ -212,23 +197,83 @@ KeptPipes& kept_pipes() {
   return pipes;
 }
 
+/// Returns the content of a pipe, which is no longer kept.
+std::shared_ptr<const FileBytes> taken(const PipeKey& key, const std::filesystem::path& path) {
+  if (auto kept = kept_pipes().take(key)) return kept;
+  return std::make_shared<FileBytes>(read_all(path));
+}
+
 }  // namespace
 
 FileBytes read_whole_file(const std::filesystem::path& path) {
   if (const std::optional<PipeKey> pipe = pipe_at(path)) {
-    if (std::optional<FileBytes> kept = kept_pipes().take(*pipe)) return std::move(*kept);
+    // The content is copied only if another thread still reads it.
+    if (const std::shared_ptr<FileBytes> kept = kept_pipes().take(*pipe)) {
+      if (kept.use_count() == 1) return std::move(*kept);
+      return {first_bytes(kept->storage, kept->size, kept->size), kept->size};
+    }
   }
   return read_all(path);
 }
 
 std::string read_file_head(const std::filesystem::path& path, std::size_t size) {
-  if (const std::optional<PipeKey> pipe = pipe_at(path)) return kept_pipes().head(*pipe, path, size);
+  if (const std::optional<PipeKey> pipe = pipe_at(path)) return text_head(kept_pipes().keep(*pipe, path)->span(), size);
   struct stat info{};
   const Descriptor file = opened(path, info);
   std::string head(size, '\0');
   head.resize(read_up_to(file.number, reinterpret_cast<std::byte*>(head.data()), size, path));
   return head;
 }
+
+std::uint64_t count_file_bytes(const std::filesystem::path& path) {
+  if (const std::optional<PipeKey> pipe = pipe_at(path)) return kept_pipes().keep(*pipe, path)->size;
+  struct stat info{};
+  const Descriptor file = opened(path, info);
+  return static_cast<std::uint64_t>(info.st_size);
+}
+
+bool is_pipe(const std::filesystem::path& path) {
+  return pipe_at(path).has_value();
+}
+
+namespace volume_io {
+
+FileSource::FileSource(const std::filesystem::path& path, PipeUse use) : ByteSource(path.string()) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    const bool is_missing = !error || error == std::errc::no_such_file_or_directory;
+    throw FileError("cannot read '" + name() + "': " + (is_missing ? missing_text(path) : error.message()));
+  }
+  if (const std::optional<PipeKey> pipe = pipe_at(path)) {
+    if (use == PipeUse::refuse) {
+      throw FileError("cannot read '" + name() +
+                      "': it is a pipe, and it is one of several files of the same content; write it to a file");
+    }
+    pipe_ = use == PipeUse::keep ? kept_pipes().keep(*pipe, path) : taken(*pipe, path);
+    size_ = pipe_->size;
+    return;
+  }
+  if (!std::filesystem::is_regular_file(status)) throw FileError("cannot read '" + name() + "': it is not a file");
+  size_ = std::filesystem::file_size(path, error);
+  if (error) throw FileError("cannot read '" + name() + "': " + error.message());
+  stream_.open(path, std::ios::binary);
+  if (!stream_) throw FileError("cannot open '" + name() + "' for reading; check its permissions");
+}
+
+void FileSource::read(std::uint64_t offset, std::span<std::byte> out) const {
+  check_range(offset, out.size());
+  if (pipe_) {
+    if (!out.empty()) std::memcpy(out.data(), pipe_->span().data() + offset, out.size());
+    return;
+  }
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(offset));
+  stream_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
+  if (!stream_) throw FileError("cannot read '" + name() + "': the system gave fewer bytes than the file has");
+}
+
+}  // namespace volume_io
 
 }  // namespace blum
 

@@ -11,6 +11,17 @@
 
 #include "blum/core/buffer.hpp"
 
+namespace blum {
+
+/// Content of a file.
+struct FileBytes {
+  Buffer<std::byte> storage = {};
+  std::size_t size = 0;  ///< the storage may be larger than this
+  [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
+};
+
+}  // namespace blum
+
 namespace blum::volume_io {
 
 /// Source of bytes with random access. Only one thread may use a source at a time.
@@ -35,14 +46,23 @@ class ByteSource {
   std::string name_;
 };
 
+/// Use of the bytes of a pipe, which can be read only once.
+enum class PipeUse : std::uint8_t {
+  take,   ///< the source takes them; later readers get none
+  keep,   ///< the next reader gets them, too
+  refuse  ///< it is an error if the file is a pipe
+};
+
 class FileSource final : public ByteSource {
  public:
-  /// Opens a file. @throws FileError unless it is a regular file that can be read.
-  explicit FileSource(const std::filesystem::path& path);
+  /// Opens a file. A pipe is read to its end, and its bytes stay in memory.
+  /// @throws FileError unless it is a regular file or a pipe that can be read.
+  explicit FileSource(const std::filesystem::path& path, PipeUse use = PipeUse::take);
   [[nodiscard]] std::uint64_t size() const override { return size_; }
   void read(std::uint64_t offset, std::span<std::byte> out) const override;
 
  private:
+  std::shared_ptr<const FileBytes> pipe_;  ///< bytes of a pipe; null for regular files
   mutable std::ifstream stream_;
   std::uint64_t size_ = 0;
 };
@@ -127,13 +147,6 @@ class InflateStream final : public ByteStream {
 
 namespace blum {
 
-/// Content of a file.
-struct FileBytes {
-  Buffer<std::byte> storage = {};
-  std::size_t size = 0;  ///< the storage may be larger than this
-  [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
-};
-
 /// Returns all bytes of a file, or of a pipe up to its end. If read_file_head() was called for the pipe before, the
 /// bytes that it read are part of the result.
 /// @throws FileError if it cannot be read, or is a directory or a device; OutOfMemory.
@@ -143,5 +156,12 @@ struct FileBytes {
 /// until the next call of read_whole_file() for the same pipe. Any thread may call this function.
 /// @throws as read_whole_file().
 [[nodiscard]] std::string read_file_head(const std::filesystem::path& path, std::size_t size);
+
+/// Returns the number of bytes of a file. A pipe is read and kept, as by read_file_head().
+/// @throws as read_whole_file().
+[[nodiscard]] std::uint64_t count_file_bytes(const std::filesystem::path& path);
+
+/// Returns true if a path names a pipe. The path is not opened.
+[[nodiscard]] bool is_pipe(const std::filesystem::path& path);
 
 }  // namespace blum

@@ -236,7 +236,7 @@ class ComplexNpzReader {
 /// damage.
 bool holds_complex(std::string_view, const std::filesystem::path& path) {
   try {
-    const volume_io::FileSource source(path);
+    const volume_io::FileSource source(path, volume_io::PipeUse::keep);
     const NpzReader npz(source);
     return npz.has("vertices") && !npz.has("distance");
   } catch (const FormatError&) {

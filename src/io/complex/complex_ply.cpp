@@ -112,10 +112,15 @@ void write_vertices(RowWriter& out, const Complex& complex) {
   }
 }
 
-/// Returns true if the file is an axis written by write_medial(). Other complexes cannot be distinguished from meshes.
+/// Returns true if the file is an axis written by write_medial(), a Voronoi diagram or centrelines. Other complexes
+/// cannot be distinguished from meshes, or are used as meshes.
 bool holds_axis(std::string_view head, const std::filesystem::path&) {
   const std::string_view header = head.substr(0, head.find("end_header"));
-  return header.find(R"(comment blum {"content": "medial axis"})") != std::string_view::npos;
+  const auto states = [&](const char* content) {
+    return header.find("comment blum {\"content\": \"" + std::string(content) + "\"}") != std::string_view::npos;
+  };
+  return states("medial axis") || states("Voronoi diagram") || states("walls of a Voronoi diagram") ||
+         states("centreline");
 }
 
 }  // namespace

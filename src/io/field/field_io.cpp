@@ -5,7 +5,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <system_error>
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
@@ -14,6 +17,8 @@
 
 namespace blum {
 namespace {
+
+constexpr std::size_t head_size = 8192;  // bytes that show the format of a file
 
 void check_sizes(const Field& field) {
   validate(field.grid);
@@ -51,8 +56,10 @@ void write_field(const std::filesystem::path& path, const Field& field, const Fi
 }
 
 Field read_field(const std::filesystem::path& path) {
-  const FieldFormat format = FieldFormat::of(path);
-  return read(volume_io::FileSource(path), format, path);
+  std::optional<FieldFormat> format = FieldFormat::by_name(path);
+  std::error_code ignored;
+  if (!format && std::filesystem::exists(path, ignored)) format = FieldFormat::by_head(read_file_head(path, head_size));
+  return read(volume_io::FileSource(path), format ? *format : FieldFormat::of(path), path);
 }
 
 Field read_field(std::span<const std::byte> bytes, FieldFormat format, const std::string& name) {

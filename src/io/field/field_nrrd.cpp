@@ -43,7 +43,7 @@ Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
 
 /// Reads an array from its separate file.
 void read_beside(const std::filesystem::path& path, BesideArray array, Field& field) {
-  const FileSource source(path);
+  const FileSource source(path, PipeUse::refuse);
   const NrrdHeader header = read_nrrd_header(source);
   if (header.grid.size != field.grid.size) {
     throw FormatError(source.name() + ": it holds " +
@@ -75,7 +75,7 @@ std::string_view name_of(BesideArray array) {
 
 bool has_own_beside(const std::filesystem::path& path, BesideArray array) {
   try {
-    const NrrdHeader header = read_nrrd_header(FileSource(beside_path(path, array)));
+    const NrrdHeader header = read_nrrd_header(FileSource(beside_path(path, array), PipeUse::refuse));
     return find_value(header.key_values, distances_key) == path.filename().string();
   } catch (const Error&) {
     return false;  // no such file exists, or it was not written by Blum
@@ -138,7 +138,7 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
   } else if (path.empty()) {
     throw FormatError(source.name() + ": its data are in another file, '" + header.data_file + "'");
   } else {
-    field.distance = nrrd_distances(FileSource(nrrd_data_path(header, path)), header);
+    field.distance = nrrd_distances(FileSource(nrrd_data_path(header, path), PipeUse::refuse), header);
   }
   apply_metadata(header.key_values, source.name(), field);
   for (const BesideArray array : beside_arrays) {

@@ -19,7 +19,8 @@ namespace {
 
 using namespace volume_io;
 
-ImageFile checked(ImageFile file, const std::string& name) {
+ImageFile checked(ImageFile file, ImageFormat format, const std::string& name) {
+  file.format = format;
   try {
     validate(file.image);
   } catch (const InvalidImage& error) {
@@ -40,15 +41,16 @@ void volume_io::write_values_after(const std::filesystem::path& path, const std:
 }
 
 ImageFile read_image_file(const std::filesystem::path& path) {
-  const formats::ImageCode& code = formats::code_of(ImageFormat::of(path));
+  const ImageFormat format = ImageFormat::of(path);
+  const formats::ImageCode& code = formats::code_of(format);
   if (code.read_several != nullptr) {
-    if (auto file = code.read_several(path)) return checked(std::move(*file), path.string());
+    if (auto file = code.read_several(path)) return checked(std::move(*file), format, path.string());
   }
-  return checked(code.read(FileSource(path), path), path.string());
+  return checked(code.read(FileSource(path), path), format, path.string());
 }
 
 ImageFile read_image_file(std::span<const std::byte> bytes, ImageFormat format, const std::string& name) {
-  return checked(formats::code_of(format).read(MemorySource(bytes, name), {}), name);
+  return checked(formats::code_of(format).read(MemorySource(bytes, name), {}), format, name);
 }
 
 VoxelImage read_image(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -349,8 +350,22 @@ ImageFile read_nifti(const ByteSource& source, const ByteSource* data_source) {
 
 namespace {
 
-bool begins_as_nifti(std::string_view head) {
+bool begins_as_plain_nifti(std::string_view head) {
   return head.size() >= 348 && (head.substr(344, 3) == "n+1" || head.substr(4, 3) == "n+2");
+}
+
+/// Returns true if the first bytes are those of NIfTI, or the first bytes of a gzip file with NIfTI inside.
+bool begins_as_nifti(std::string_view head) {
+  if (!head.starts_with("\x1f\x8b")) return begins_as_plain_nifti(head);
+  std::string inside(348, '\0');
+  try {
+    const MemorySource packed(std::as_bytes(std::span(head)), "");
+    InflateStream stream(packed, 0, packed.size(), Compression::gzip);
+    stream.read(std::as_writable_bytes(std::span(inside)), "the header");
+  } catch (const FormatError&) {
+    return false;
+  }
+  return begins_as_plain_nifti(inside);
 }
 
 ImageFile read(const ByteSource& source, const std::filesystem::path&) {
@@ -378,8 +393,8 @@ std::optional<ImageFile> read_pair(const std::filesystem::path& path) {
   const std::string extension = lower_case(stem.extension().string());
   if (extension != ".hdr" && extension != ".img") return std::nullopt;
   stem.replace_extension();
-  const FileSource header(half_of_pair(stem, ".hdr"));
-  const FileSource data(half_of_pair(stem, ".img"));
+  const FileSource header(half_of_pair(stem, ".hdr"), PipeUse::refuse);
+  const FileSource data(half_of_pair(stem, ".img"), PipeUse::refuse);
   return read_nifti(header, &data);
 }
 

@@ -558,7 +558,7 @@ ImageFile read_nrrd(const ByteSource& source, const std::filesystem::path& path)
   std::optional<FileSource> detached;
   if (!header.data_file.empty()) {
     if (path.empty()) throw FormatError(source.name() + ": its data are in another file, '" + header.data_file + "'");
-    detached.emplace(nrrd_data_path(header, path));
+    detached.emplace(nrrd_data_path(header, path), PipeUse::refuse);
   }
   const ByteSource& data = detached ? static_cast<const ByteSource&>(*detached) : source;
   check_nrrd_data_size(data, header);

@@ -3,6 +3,7 @@
 
 #include "io/format_table.hpp"
 #include "io/mesh/mesh_builder.hpp"
+#include "io/mesh/mesh_stl.hpp"
 #include "io/text/row_writer.hpp"
 #include "io/text/text_cursor.hpp"
 
@@ -209,6 +210,16 @@ void write_stl(const std::filesystem::path& path, const MeshView& mesh) {
   }
   out.finish();
 }
+
+}  // namespace
+
+bool volume_io::is_binary_stl(std::string_view head, std::uint64_t size) {
+  if (head.size() < header_size) return false;
+  const std::uint64_t count = little_endian_word(head.data() + 80);
+  return count > 0 && size == header_size + triangle_size * count;
+}
+
+namespace {
 
 bool begins_as_stl(std::string_view head) {
   return head.starts_with("solid ") && head.find("facet") != std::string_view::npos;

@@ -325,9 +325,10 @@ SurfaceMapFile read_surface_map(std::span<const std::byte> bytes, const std::str
 
 bool holds_surface_map(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (file_extension(path) != ".npz" || !std::filesystem::is_regular_file(path, ignored)) return false;
+  if (file_extension(path) != ".npz") return false;
+  if (!std::filesystem::is_regular_file(path, ignored) && !is_pipe(path)) return false;
   try {
-    const volume_io::FileSource source(path);
+    const volume_io::FileSource source(path, volume_io::PipeUse::keep);
     const volume_io::NpzReader npz(source);
     return npz.has("distance") && npz.has("vertex_distance");
   } catch (const Error&) {

@@ -18,6 +18,7 @@
 #include "io/bytes/byte_source.hpp"
 #include "io/complex/complex_ply_names.hpp"
 #include "io/format_table.hpp"
+#include "io/mesh/mesh_stl.hpp"
 #include "io/table/table_files.hpp"
 #include "io/text/text_cursor.hpp"
 
@@ -160,6 +161,37 @@ void write_npz(const std::filesystem::path& path, const Complex& points, const F
   tables::write_npz(path, std::span(&table, 1), metadata, context);
 }
 
+constexpr std::size_t head_size = 8192;  // bytes that show the format of a file
+
+/// Returns true if the first lines of a file are rows of numbers, perhaps after a row of names.
+bool begins_as_rows(std::string_view head) {
+  // The last line may be cut off.
+  if (head.size() == head_size) head = head.substr(0, head.find_last_of("\r\n"));
+  if (head.find('\0') != std::string_view::npos) return false;
+  try {
+    return !RowReader(head, "").read().empty();
+  } catch (const FormatError&) {
+    return false;
+  }
+}
+
+/// Reads points from a file whose extension is not known. Its content decides the format.
+std::vector<Vec3d> read_points_by_content(const std::filesystem::path& path) {
+  const std::string head = read_file_head(path, head_size);
+  if (head.starts_with("\x93NUMPY")) return read_npy(path);
+  if (head.starts_with("PK\x03\x04")) return read_npz(path);
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) {
+    return read_complex(read_whole_file(path).span(), ComplexFormat("PLY"), path.string()).complex.positions;
+  }
+  const auto mesh = mesh_format_by_content(path, head);
+  if (mesh) return read_mesh(read_whole_file(path).span(), *mesh, {}, path.string()).vertices;
+  if (begins_as_rows(head)) return read_point_rows(read_whole_file(path).span(), quoted(path));
+  throw FileError(quoted(path) + ": its content shows no format of points; points are read from " +
+                  extension_list(FileContent::points, FileAccess::read, ", ") +
+                  " files. Give the file one of these extensions; a pipe can have it by a link, as in `ln -s "
+                  "/dev/stdin points.csv`");
+}
+
 }  // namespace
 
 std::vector<std::string> cloud_extensions() {
@@ -175,7 +207,10 @@ std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::s
 }
 
 std::vector<Vec3d> read_points(const std::filesystem::path& path) {
-  std::vector<Vec3d> points = formats::code_of(PointFormat::of(path)).read(path);
+  std::error_code ignored;
+  const bool is_named = PointFormat::by_name(path).has_value() || !std::filesystem::exists(path, ignored);
+  std::vector<Vec3d> points =
+      is_named ? formats::code_of(PointFormat::of(path)).read(path) : read_points_by_content(path);
   check_finite(points, quoted(path));
   return points;
 }
