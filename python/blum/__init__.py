@@ -42,8 +42,8 @@ from . import (
     _structs,
     _surface_map,
     _transform,
-    _triangle_distances,
     _translation,
+    _triangle_distances,
     _verifier,
     _view,
     _voronoi,
@@ -81,8 +81,8 @@ from ._solid import *
 from ._structs import *
 from ._surface_map import *
 from ._transform import *
-from ._triangle_distances import *
 from ._translation import *
+from ._triangle_distances import *
 from ._verifier import *
 from ._view import *
 from ._voronoi import *

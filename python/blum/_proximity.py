@@ -147,7 +147,7 @@ def first_contact(
     arrays = None if partner is None else partner._arrays
     count = integer(threads, "threads")
     with reporting(progress) as report:
-        found = _core.first_contact(start._arrays, last, arrays, partner_last, dict(options), count, report)
+        found: Any = _core.first_contact(start._arrays, last, arrays, partner_last, dict(options), count, report)
     return FirstContact(*found) if found is not None else None
 
 

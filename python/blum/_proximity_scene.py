@@ -666,7 +666,7 @@ class ProximityScene:
         rows = [_motion(which, end) for which, end in _motions_of(motions)]
         count = integer(threads, "threads")
         with self._alone(progress) as report:
-            found = self._scene.first_contact(rows, dict(options), count, report)
+            found: Any = self._scene.first_contact(rows, dict(options), count, report)
         return FirstContact(*found) if found is not None else None
 
     def _change(self, index: int, **facts: Any) -> None:

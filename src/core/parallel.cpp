@@ -86,6 +86,8 @@ class Gate {
     }
     return false;
   }
+  /// Opens a gate that nobody uses.
+  void open() { state_ = 0; }
   void leave() {
     if (state_.fetch_sub(1) == closed + 1) state_.notify_one();
   }
@@ -98,6 +100,59 @@ class Gate {
  private:
   static constexpr std::uint32_t closed = std::uint32_t{1} << 31;
   std::atomic<std::uint32_t> state_{0};  ///< number of helpers inside, and `closed`
+};
+
+/// Gates that no loop and no helper uses. Helpers that have not started when the process ends keep their gates, so the
+/// pool keeps all gates reachable, and is never destroyed.
+class GatePool {
+ public:
+  struct Shared {
+    Gate gate;
+    std::atomic<int> owners{1};
+  };
+
+  static GatePool& instance() {
+    static GatePool& pool = *new GatePool;
+    return pool;
+  }
+  Shared* take() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) {
+      free_.reserve(all_.size() + 1);  // so give_back() allocates no memory
+      all_.push_back(std::make_unique<Shared>());
+      return all_.back().get();
+    }
+    Shared* const shared = free_.back();
+    free_.pop_back();
+    shared->gate.open();
+    shared->owners = 1;
+    return shared;
+  }
+  void give_back(Shared* shared) noexcept {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(shared);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Shared>> all_;
+  std::vector<Shared*> free_;
+};
+
+/// Gate that a loop and its helpers own together.
+class SharedGate {
+ public:
+  SharedGate() : shared_(GatePool::instance().take()) {}
+  SharedGate(const SharedGate& other) : shared_(other.shared_) { ++shared_->owners; }
+  SharedGate& operator=(const SharedGate&) = delete;
+  ~SharedGate() {
+    if (--shared_->owners == 0) GatePool::instance().give_back(shared_);
+  }
+  Gate& operator*() const { return shared_->gate; }
+  Gate* operator->() const { return &shared_->gate; }
+
+ private:
+  GatePool::Shared* shared_;
 };
 
 /// Closes a gate at the end of a scope, also if an invitation fails.
@@ -122,7 +177,7 @@ bool run_workers(int workers, const std::function<void(int)>& run) {
   constexpr int most_waiting = 4096;
   if (waiting_helpers() > most_waiting) return false;
   ArenaPool::Lease lease(ArenaPool::instance(), slots);
-  const auto gate = std::make_shared<Gate>();
+  const SharedGate gate;
   const Closing closing{*gate};
   for (int worker = 1; worker < slots; ++worker) {
     lease.arena().enqueue([gate, &run, worker] {

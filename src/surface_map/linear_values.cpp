@@ -16,9 +16,8 @@ constexpr std::size_t bins = 1024;
 /// Weights of triangles by the range of their values, to find a short interval that contains a percentile.
 class Histogram {
  public:
-  explicit Histogram(std::span<const LinearValue> values) : all_ends_(bins + 1, 0), any_begins_(bins + 1, 0) {
-    least_ = values.front().lowest;
-    most_ = values.front().highest;
+  explicit Histogram(std::span<const LinearValue> values)
+      : least_(values.front().lowest), most_(values.front().highest), all_ends_(bins + 1, 0), any_begins_(bins + 1, 0) {
     for (const LinearValue& v : values) {
       least_ = std::min(least_, v.lowest);
       most_ = std::max(most_, v.highest);

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 blum = pytest.importorskip("blum")
 
 #: Queries of solids and of motions, and those without pairs; other tests cover them.
-ELSEWHERE = {"signed", "penetration", "continuous", "meets"}
+ELSEWHERE = {"signed", "penetration", "continuous", "meets", "translation"}
 
 
 def method_of(query):

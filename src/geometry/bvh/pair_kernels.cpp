@@ -38,7 +38,7 @@ struct AxisGaps {
   double most = -1e300;  ///< the largest gap, or minus the smallest overlap
 
   /// Adds the gap between the intervals [-half, half] and [center - reach, center + reach].
-  inline void add(double center, double half, double reach) {
+  void add(double center, double half, double reach) {
     const double gap = std::abs(center) - half - reach;
     most = std::max(most, gap);
     squared += std::max(gap, 0.0) * std::max(gap, 0.0);

@@ -64,7 +64,12 @@ TEST(ParallelFor, ReportsRisingProgressThatEndsAtOne) {
 
 // The smallest case of a leak: each loop had an arena of oneTBB, 7 KB of which stayed.
 TEST(ParallelFor, KeepsNoMemoryFromLoopToLoop) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define BLUM_TEST_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(BLUM_TEST_SANITIZED)
   GTEST_SKIP() << "sanitizers keep memory of their own";
 #endif
   if (!std::ifstream("/proc/self/statm")) GTEST_SKIP() << "no /proc/self/statm here";
