@@ -149,8 +149,7 @@ class AxisExtender {
 
   /// Turns the ways of corners that lie on another sheet, or slightly beyond it, but share no vertex with it.
   void turn_beside(const SearchMesh& sheets) {
-    for (std::size_t c = 0; c < continued_.size(); ++c) {
-      Continued& corner = continued_[c];
+    for (Continued& corner : continued_) {
       if (corner.stays || !corner.start.normal) continue;
       const double slack = beside * corner.start.radius;
       std::optional<Vec3d> turned;

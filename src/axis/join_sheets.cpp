@@ -160,7 +160,7 @@ class SheetJoiner {
     out_.stands_for[from] = to;
     std::vector<std::pair<Edge, std::uint32_t>> moved;
     for (const auto& border : borders_) {
-      if (border.first.first == from || border.first.second == from) moved.push_back(border);
+      if (border.first.first == from || border.first.second == from) moved.emplace_back(border);
     }
     for (const auto& [edge, index] : moved) {
       borders_.erase(edge);

@@ -59,7 +59,8 @@ Field read_field(const std::filesystem::path& path) {
   std::optional<FieldFormat> format = FieldFormat::by_name(path);
   std::error_code ignored;
   if (!format && std::filesystem::exists(path, ignored)) format = FieldFormat::by_head(read_file_head(path, head_size));
-  return read(volume_io::FileSource(path), format ? *format : FieldFormat::of(path), path);
+  if (!format) format = FieldFormat::of(path);  // before the file is opened, for its error
+  return read(volume_io::FileSource(path), *format, path);
 }
 
 Field read_field(std::span<const std::byte> bytes, FieldFormat format, const std::string& name) {

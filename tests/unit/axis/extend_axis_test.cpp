@@ -381,7 +381,7 @@ INSTANTIATE_TEST_SUITE_P(Sections, ExtendedSection,
 INSTANTIATE_TEST_SUITE_P(Profiles, ExtendedProfile, ::testing::ValuesIn(profiles),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(ExtendAxis, KeepsTheTopologyOfThickShapes) {
+TEST(SlowExtendAxis, KeepsTheTopologyOfThickShapes) {
   std::size_t triangles = 0;
   for (const char* const name : {"bracket", "gear", "star", "wedge", "menger", "spoon"}) {
     SCOPED_TRACE(name);
