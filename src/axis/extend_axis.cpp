@@ -110,8 +110,8 @@ class AxisExtender {
     sheets_.triangles = axis_.triangles;
     const Incidence incidence(axis_.view(), context_);
     for (std::size_t e = 0; e < axis_.edges.size(); ++e) {
-      if (incidence.triangles_of_edge()[incidence.edge_of_listed()[e]].empty())
-        sheets_.curves.push_back(axis_.edges[e]);
+      const bool is_curve = incidence.triangles_of_edge()[incidence.edge_of_listed()[e]].empty();
+      if (is_curve) sheets_.curves.push_back(axis_.edges[e]);
     }
     for (const double r : view_.radius) sheets_.thickness.push_back(2 * r);
     sheets_.is_new_vertex.assign(axis_.positions.size(), 0);
@@ -154,11 +154,9 @@ class AxisExtender {
       const double slack = beside * corner.start.radius;
       std::optional<Vec3d> turned;
       sheets.bvh().for_each_within(corner.start.at, slack, [&](const NearestPrimitive& near) {
-        const bool is_other = sheets.sheet(near.primitive) != corner.start.sheet;
-        const Vec3d beyond = corner.start.at - near.point;
-        if (is_other)
-          turned =
-              detail::way_beside(corner.start.outwards, *corner.start.normal, sheets.normal(near.primitive), beyond);
+        if (sheets.sheet(near.primitive) == corner.start.sheet) return true;
+        turned = detail::way_beside(corner.start.outwards, *corner.start.normal, sheets.normal(near.primitive),
+                                    corner.start.at - near.point);
         return !turned;
       });
       if (!turned) continue;
@@ -218,6 +216,7 @@ class AxisExtender {
     });
   }
 
+  /// Adds the triangles of all strips to a mesh of the axis's vertices, and the numbers of their sheets to a list.
   void add_strips_to(TriangleMesh& mesh, std::vector<std::int32_t>& of_sheet) const {
     for (std::size_t e = 0; e < strips_.size(); ++e) {
       const auto first = static_cast<std::uint32_t>(mesh.vertices.size());

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "axis/rim_reach.hpp"
+#include "axis/rims.hpp"
 #include "blum/geometry/closest_point.hpp"
 
 namespace blum::detail {
@@ -17,7 +17,6 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the smaller vertex first
 
-constexpr double cosine_of_meeting = 0.966;  // of 15 degrees: at smaller angles, a sheet continues the strip
 /// Rounds in which one vertex is joined to sheets that meet there.
 constexpr int most_sheets_at_vertex = 8;
 constexpr int most_steps = 10000;
@@ -45,14 +44,13 @@ class SheetJoiner {
  public:
   SheetJoiner(const SheetsToJoin& sheets, const Context& context)
       : axis_vertices_(sheets.axis_vertices),
-        tolerance_(sheets.tolerance),
+        tolerance_(sheets.tolerance.begin(), sheets.tolerance.end()),
         context_(context),
-        search_({sheets.positions, sheets.triangles}, {}, context),
-        parts_of_(sheets.triangles.size()),
-        at_vertex_(sheets.positions.size()) {
-    out_.positions = sheets.positions;
-    for (std::uint32_t v = 0; v < out_.positions.size(); ++v) out_.stands_for.push_back(v);
-    for (std::uint32_t t = 0; t < sheets.triangles.size(); ++t) add(sheets.triangles[t], t);
+        search_(sheets.mesh),
+        parts_of_(search_.mesh().triangles.size()),
+        at_vertex_(search_.mesh().vertices.size()) {
+    out_.positions = search_.mesh().vertices;
+    for (std::uint32_t t = 0; t < parts_of_.size(); ++t) add(search_.mesh().triangles[t], t);
     for (std::uint32_t k = 0; k < sheets.borders.size(); ++k) {
       borders_.emplace(edge_of(sheets.borders[k][0], sheets.borders[k][1]), k);
     }
@@ -106,7 +104,6 @@ class SheetJoiner {
     const double part = length(position - at(edge.first)) / length(at(edge.second) - at(edge.first));
     out_.new_vertices.push_back({{edge.first, edge.second}, part});
     out_.positions.push_back(position);
-    out_.stands_for.push_back(v);
     tolerance_.push_back(tolerance);
     at_vertex_.emplace_back();
     return v;
@@ -157,7 +154,6 @@ class SheetJoiner {
         replace(t, from, to);
       }
     }
-    out_.stands_for[from] = to;
     std::vector<std::pair<Edge, std::uint32_t>> moved;
     for (const auto& border : borders_) {
       if (border.first.first == from || border.first.second == from) moved.emplace_back(border);
@@ -180,13 +176,11 @@ class SheetJoiner {
     }
     for (const std::uint32_t v : vertices) {
       throw_if_cancelled(context_);
-      if (out_.stands_for[v] == v) join_vertex(v);
-    }
-    for (std::uint32_t& v : out_.stands_for) {
-      while (out_.stands_for[v] != v) v = out_.stands_for[v];
+      join_vertex(v);
     }
   }
 
+  /// Does nothing for a vertex that was merged with another, because it has no triangles.
   void join_vertex(std::uint32_t v) {
     const std::optional<Vec3d> normal = largest_normal(at_vertex_[v]);
     for (int round = 0; normal && round < most_sheets_at_vertex; ++round) {
@@ -365,7 +359,7 @@ class SheetJoiner {
   std::size_t axis_vertices_;
   std::vector<double> tolerance_;
   const Context& context_;
-  SearchMesh search_;                                  ///< of the sheets before they are joined
+  const SearchMesh& search_;                           ///< of the sheets before they are joined
   std::vector<std::vector<std::uint32_t>> parts_of_;   ///< by triangle before joining
   std::vector<std::vector<std::uint32_t>> at_vertex_;  ///< triangles of each vertex
   std::vector<bool> is_alive_;

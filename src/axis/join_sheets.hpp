@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "axis/rim_reach.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
 
@@ -16,8 +18,6 @@ struct JoinedSheets {
   std::vector<Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> first;  ///< For each triangle: its number before the sheets were joined.
-  /// For each vertex: itself, or the vertex that it was merged with, which has no such entry.
-  std::vector<std::uint32_t> stands_for;
   /// New vertex on an edge.
   struct OnEdge {
     std::array<std::uint32_t, 2> ends{};
@@ -35,12 +35,11 @@ struct JoinedSheets {
 
 /// Sheets and strips to join.
 struct SheetsToJoin {
-  std::vector<Vec3d> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const SearchMesh& mesh;
   std::size_t axis_vertices = 0;                      ///< The first vertices. These neither move nor disappear.
   std::vector<std::array<std::uint32_t, 2>> borders;  ///< Outer edges of strips. Each belongs to one triangle.
   /// For each vertex, mesh units. If the border of a strip passes another sheet within this distance, they meet.
-  std::vector<double> tolerance;
+  std::span<const double> tolerance;
 };
 
 /// Joins strips to the sheets and strips on which their borders lie. Triangles are divided where borders cross them.

@@ -16,10 +16,8 @@ namespace {
 constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
 constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may lie in this part
 constexpr double nearly_none = 1e-6;        // of the way: crossings in this part are the start itself
-constexpr double sine_of_meeting = 0.26;    // of 15 degrees: at smaller angles, the sheet continues the rim
-constexpr double cosine_of_meeting = 0.966;
-constexpr double passing = 0.25;    // of the radius: a way that passes a rim so closely meets its sheet
-constexpr int steps_along_rim = 3;  // A way passes rims so close to its own start without meeting them.
+constexpr double passing = 0.25;            // of the radius: a way that passes a rim so closely meets its sheet
+constexpr int steps_along_rim = 3;          // A way passes rims so close to its own start without meeting them.
 /// A way that is longer than the ways beside it by more than this factor leads past what they meet.
 constexpr double longer_way = 1.5;
 constexpr double longest_corner = 2.5;  // the same for ways to corners
@@ -378,11 +376,10 @@ std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) con
   if (!meeting) return std::nullopt;
   const double off = std::min(length(*meeting - a.target.at), length(*meeting - b.target.at));
   if (off > 2 * start->reach || length(*meeting - middle) > 8 * gap) return std::nullopt;
-  const Vec3d way = *meeting - start->at;
-  const bool knows_strips = obstacles_.strips != nullptr;
-  if (is_at_sheet(a, b) && knows_strips && !on_sheet(*meeting, on_same_sheet * start->radius, *start))
-    return std::nullopt;
-  if (is_at_sheet(a, b) && length(way) > longest_corner * longest_way(a, b)) return std::nullopt;
+  if (is_at_sheet(a, b)) {
+    const bool is_beside = obstacles_.strips != nullptr && !on_sheet(*meeting, on_same_sheet * start->radius, *start);
+    if (is_beside || length(*meeting - start->at) > longest_corner * longest_way(a, b)) return std::nullopt;
+  }
   const std::optional<RimTarget> target = at(*meeting, corner_tolerance * start->reach, *start);
   return target ? std::optional(Stop{*start, *target}) : std::nullopt;
 }

@@ -71,7 +71,7 @@ struct RimStart {
   double radius = 0;                   ///< Distance to the surface.
   double reach = 0;                    ///< Greatest length of the way.
   std::array<std::uint32_t, 2> own{};  ///< Vertices of the axis that the point lies on or between.
-  std::int32_t sheet = 0;
+  std::int32_t sheet = 0;              ///< Number of the sheet of the rim.
 };
 
 enum class RimEnd : std::uint8_t {
@@ -103,7 +103,7 @@ class RimReach {
   /// Returns the end of the way from a start. It is the closest visible surface point in the plane of the start, within
   /// 65 degrees of its direction. If the start has no plane, it is the first surface point along its direction. If the
   /// way first meets a sheet or strip at 15 degrees or more, the meeting point is returned instead. A way also meets a
-  /// sheet if it passes its rim within a tenth of the radius.
+  /// sheet if it passes its rim within a quarter of the radius.
   [[nodiscard]] std::optional<RimTarget> find(const RimStart& start) const;
 
   struct Stop {

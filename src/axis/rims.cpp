@@ -15,8 +15,6 @@ namespace blum::detail {
 namespace {
 
 constexpr double least_cosine = 0.174;  // of 80 degrees
-/// The sine of 15 degrees. At smaller angles, one sheet continues the other.
-constexpr double sine_of_meeting = 0.26;
 /// A way passes through a plane only if its part along the plane's normal is at least this.
 constexpr double least_turn = 0.1;
 constexpr std::uint32_t first_of_line = 2;

@@ -14,6 +14,10 @@
 
 namespace blum::detail {
 
+/// Two sheets that form less than 15 degrees continue each other. At larger angles, they meet.
+inline constexpr double sine_of_meeting = 0.26;
+inline constexpr double cosine_of_meeting = 0.966;
+
 /// A rim edge and the line of points in front of it.
 struct StripOutline {
   std::array<Vec3d, 2> rim;     ///< Ends of the edge, in the order of its triangle.

@@ -36,6 +36,20 @@ Edge sorted(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
+/// Joins edges that share a vertex, if the vertex connects.
+UnionFind connected(const std::vector<Edge>& edges, FunctionRef<bool(std::uint32_t)> connects) {
+  UnionFind groups(edges.size());
+  std::map<std::uint32_t, std::uint32_t> first_at;
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    for (const std::uint32_t v : edges[e]) {
+      if (!connects(v)) continue;
+      const auto [known, is_new] = first_at.emplace(v, e);
+      if (!is_new) groups.join(known->second, e);
+    }
+  }
+  return groups;
+}
+
 BettiNumbers betti_of(const ExtendedSheets& sheets) {
   Complex complex;
   complex.positions = sheets.positions;
@@ -186,16 +200,19 @@ class SheetSharer {
         contacts_(contacts),
         is_inside_(is_inside),
         context_(context),
-        betti_(betti_of(apart)) {}
+        search_({apart.positions, apart.triangles}, {}, context),
+        betti_(betti_of(apart)) {
+    for (const double thickness : apart.thickness) tolerance_.push_back(contacts.tolerance * thickness);
+  }
 
   ExtendedSheets run() {
     std::set<std::uint32_t> all;
     for (std::uint32_t k = 0; k < contacts_.borders.size(); ++k) all.insert(k);
     // Single points that touch would add loops, so only borders that share edges are joined.
-    const Attempt first_try = attempt(all);
-    const std::set<std::uint32_t> sharing = borders_of(first_try.seams);
+    Attempt joined = attempt(all);
+    const std::set<std::uint32_t> sharing = borders_of(joined.seams);
     if (sharing.empty()) return apart_;
-    Attempt joined = attempt(sharing);
+    if (sharing != all) joined = attempt(sharing);
     if (betti_of(joined.sheets) == betti_) return joined.sheets;
     return join_by_groups(joined);
   }
@@ -229,14 +246,9 @@ class SheetSharer {
 
   /// Returns the borders of each connected group of seams, the longest group first.
   [[nodiscard]] static std::vector<std::set<std::uint32_t>> groups_of(const Attempt& joined) {
-    UnionFind groups(joined.seams.size());
-    std::map<std::uint32_t, std::uint32_t> first_at;
-    for (std::uint32_t s = 0; s < joined.seams.size(); ++s) {
-      for (const std::uint32_t v : joined.seams[s].ends) {
-        const auto [known, is_new] = first_at.emplace(v, s);
-        if (!is_new) groups.join(known->second, s);
-      }
-    }
+    std::vector<Edge> edges;
+    for (const JoinedSheets::Part& seam : joined.seams) edges.push_back(seam.ends);
+    UnionFind groups = connected(edges, [](std::uint32_t) { return true; });
     std::map<std::uint32_t, std::pair<std::size_t, std::set<std::uint32_t>>> found;
     for (std::uint32_t s = 0; s < joined.seams.size(); ++s) {
       auto& [size, borders] = found[groups.find(s)];
@@ -256,12 +268,9 @@ class SheetSharer {
   [[nodiscard]] Attempt attempt(const std::set<std::uint32_t>& borders) const {
     Attempt out{apart_, {}};
     ExtendedSheets& sheets = out.sheets;
-    std::vector<double> tolerance;
-    for (const double thickness : sheets.thickness) tolerance.push_back(contacts_.tolerance * thickness);
     const std::vector<std::uint32_t> indices(borders.begin(), borders.end());
-    const JoinedSheets joined = join_sheets({sheets.positions, sheets.triangles, axis_.positions.size(),
-                                             chosen(contacts_.borders, indices), std::move(tolerance)},
-                                            context_);
+    const JoinedSheets joined =
+        join_sheets({search_, axis_.positions.size(), chosen(contacts_.borders, indices), tolerance_}, context_);
     for (const JoinedSheets::OnEdge& on : joined.new_vertices) {
       const auto [a, b] = on.ends;
       sheets.thickness.push_back(sheets.thickness[a] + (sheets.thickness[b] - sheets.thickness[a]) * on.part);
@@ -286,23 +295,15 @@ class SheetSharer {
     return length(sheets.positions[part.ends[1]] - sheets.positions[part.ends[0]]);
   }
 
-  /// Removes each connected group of curves if each of its vertices is within two radii of a seam. Such
-  /// curves lead through the gap between two sheets, which is now closed.
+  /// Removes each connected group of curves if each of its vertices is within two radii of a seam. Such curves
+  /// lead through the gap between two sheets, which is now closed.
   void remove_curves(Attempt& joined) const {
     std::vector<bool> is_in_triangle(joined.sheets.positions.size(), false);
     for (const Triangle& triangle : joined.sheets.triangles) {
       for (const std::uint32_t v : triangle) is_in_triangle[v] = true;
     }
     std::vector<Edge>& curves = joined.sheets.curves;
-    UnionFind groups(curves.size());
-    std::map<std::uint32_t, std::uint32_t> first_at;
-    for (std::uint32_t e = 0; e < curves.size(); ++e) {
-      for (const std::uint32_t v : curves[e]) {
-        if (is_in_triangle[v]) continue;
-        const auto [known, is_new] = first_at.emplace(v, e);
-        if (!is_new) groups.join(known->second, e);
-      }
-    }
+    UnionFind groups = connected(curves, [&](std::uint32_t v) { return !is_in_triangle[v]; });
     std::vector<bool> stays(curves.size(), false);
     for (std::uint32_t e = 0; e < curves.size(); ++e) {
       for (const std::uint32_t v : curves[e]) {
@@ -360,6 +361,8 @@ class SheetSharer {
   const SheetContacts& contacts_;
   FunctionRef<bool(const Vec3d&)> is_inside_;
   const Context& context_;
+  SearchMesh search_;              ///< of the sheets apart
+  std::vector<double> tolerance_;  ///< for each vertex of the sheets apart
   BettiNumbers betti_;
 };
 
