@@ -4,21 +4,18 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "blum/core/plural.hpp"
-#include "blum/core/union_find.hpp"
 #include "blum/geometry/facing.hpp"
+#include "blum/geometry/surface_components.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/geometry/winding_number.hpp"
 
 namespace blum::sign {
 namespace {
-
-constexpr std::uint32_t no_part = std::numeric_limits<std::uint32_t>::max();
 
 /// Triangles that are connected through edges.
 struct Part {
@@ -27,6 +24,7 @@ struct Part {
   bool is_consistent = true;  ///< no edge with two triangles is traversed in the same direction by both
   Box3 box;
   double area = 0;
+  Vec3d net_area{};   ///< sum of the triangles' area vectors: 0 if closed, as long as the area if flat
   double volume = 0;  ///< of the cones from the middle of the box over the triangles
 };
 
@@ -37,35 +35,9 @@ struct Surroundings {
   bool has_inside = false;   ///< some place has a side with a winding number above 1/2
 };
 
-bool names_vertex_twice(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 Vec3d area_vector(const MeshView& mesh, const Triangle& t) {
   const Vec3d& a = mesh.vertices[t[0]];
   return cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a) * 0.5;
-}
-
-/// Uses of an edge by triangles.
-struct EdgeUse {
-  std::uint32_t count = 0;
-  std::int32_t balance = 0;  ///< uses from the smaller to the larger vertex, minus those in the other direction
-  std::uint32_t triangle = 0;
-};
-
-std::vector<EdgeUse> uses_of_edges(const MeshView& mesh, const SiteTable& sites) {
-  std::vector<EdgeUse> uses(sites.edge_count());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& corner = mesh.triangles[t];
-    if (names_vertex_twice(corner)) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      EdgeUse& use = uses[sites.triangle_edges()[t][k].value];
-      ++use.count;
-      use.balance += corner[k] < corner[(k + 1) % 3] ? 1 : -1;
-      use.triangle = t;
-    }
-  }
-  return uses;
 }
 
 void measure(const MeshView& mesh, Part& part) {
@@ -76,43 +48,35 @@ void measure(const MeshView& mesh, Part& part) {
   for (const std::uint32_t t : part.triangles) {
     const Vec3d area = area_vector(mesh, mesh.triangles[t]);
     part.area += length(area);
+    part.net_area += area;
     part.volume += dot(mesh.vertices[mesh.triangles[t][0]] - middle, area) / 3;
   }
 }
 
 std::vector<Part> parts_of(const MeshView& mesh, const SiteTable& sites) {
-  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-  const std::vector<EdgeUse> uses = uses_of_edges(mesh, sites);
-  detail::UnionFind sets(count);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    if (names_vertex_twice(mesh.triangles[t])) continue;
-    for (const EdgeId edge : sites.triangle_edges()[t]) sets.join(t, uses[edge.value].triangle);
+  const std::vector<detail::EdgeTally> edges = detail::tally_edges(mesh, sites);
+  const detail::SurfaceComponents found = detail::find_components(mesh, sites, edges);
+  std::vector<Part> parts(found.count);
+  for (std::uint32_t t = 0; t < found.of_triangle.size(); ++t) {
+    if (found.of_triangle[t] != detail::no_component) parts[found.of_triangle[t]].triangles.push_back(t);
   }
-  std::vector<Part> parts;
-  std::vector<std::uint32_t> part_of(count, no_part);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    if (names_vertex_twice(mesh.triangles[t])) continue;
-    std::uint32_t& part = part_of[sets.find(t)];
-    if (part == no_part) {
-      part = static_cast<std::uint32_t>(parts.size());
-      parts.emplace_back();
-    }
-    part_of[t] = part;
-    parts[part].triangles.push_back(t);
-  }
-  for (const EdgeUse& use : uses) {
-    if (use.count == 0) continue;
-    Part& part = parts[part_of[use.triangle]];
-    if (use.count != 2) part.is_closed = false;
-    if (use.count == 2 && use.balance != 0) part.is_consistent = false;
+  for (std::size_t p = 0; p < parts.size(); ++p) parts[p].is_closed = found.is_closed[p] != 0;
+  for (const detail::EdgeTally& edge : edges) {
+    if (edge.count == 2 && edge.balance != 0) parts[found.of_triangle[edge.triangle]].is_consistent = false;
   }
   for (Part& part : parts) measure(mesh, part);
   return parts;
 }
 
+/// Returns true if the part surrounds a volume, at least as well as a half sphere does. Flat sheets and single
+/// triangles surround none, so neither of their sides is the inside.
+bool surrounds_a_volume(const Part& part) {
+  return part.is_closed || length(part.net_area) < 0.6 * part.area;
+}
+
 /// Returns true if the part's volume is negative by more than rounding, as that of a part that faces inwards.
 bool has_negative_volume(const Part& part) {
-  return part.volume < -1e-9 * part.area * part.box.diagonal();
+  return surrounds_a_volume(part) && part.volume < -1e-9 * part.area * part.box.diagonal();
 }
 
 /// Returns place k of a sequence that fills a triangle evenly.
@@ -162,7 +126,7 @@ Surroundings surroundings(const MeshView& mesh, const Part& part, const WindingN
 /// Returns true if a part certainly faces into the solid. The numbers of parts that face outwards are positive. Those
 /// of flat sheets are close to 0.
 bool faces_inwards(const Part& part, const Surroundings& around) {
-  if (!part.is_consistent) return false;
+  if (!part.is_consistent || !surrounds_a_volume(part)) return false;
   if (part.is_closed && has_negative_volume(part)) return around.mean < -0.1;
   if (part.is_closed) return around.mean < -0.4;
   return around.mean < -0.25 && around.outward_share < 0.1;

@@ -195,6 +195,25 @@ TEST(SignWarnings, UnclosedAndCrossingMeshesGetTheirInside) {
   }
 }
 
+/// Separate triangles surround no volume, so the winding numbers of the given mesh decide.
+TEST(SignWarnings, SeparateTrianglesAreNotReversed) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SoupOptions options;
+    options.triangles = 10 * seed;
+    options.seed = seed;
+    const TriangleMesh soup = make_soup(options);
+    const ClosestPointQuery automatic(soup);
+    const ClosestPointQuery as_given(soup, {.sign = SignMode::winding});
+    EXPECT_TRUE(automatic.warnings().empty());
+    EXPECT_TRUE(as_given.warnings().empty());
+    Random random(seed);
+    for (int k = 0; k < 100; ++k) {
+      const Vec3d q = random.in_cube();
+      ASSERT_EQ(automatic.nearest(q).distance, as_given.nearest(q).distance);
+    }
+  }
+}
+
 /// Voids, sheets and shells that cross face the right way.
 TEST(SignWarnings, AreEmptyForOpenAndCrossingSolidsWithVoids) {
   const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
