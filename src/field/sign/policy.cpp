@@ -143,14 +143,17 @@ bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
   return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
 }
 
-bool Planner::crosses(const MeshView& mesh, const Context& context) {
-  return search_.finds_any(mesh, {.threads = context.threads, .cancel = context.cancel});
+bool Planner::KnownCrossings::operator()(const MeshView& mesh) {
+  if (answer_) return *answer_;
+  const bool is_crossing = search_.finds_any(mesh, {.threads = context_.threads, .cancel = context_.cancel});
+  if (is_shared_) answer_ = is_crossing;
+  return is_crossing;
 }
 
 Plan Planner::plan_oriented(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
-                            const Context& context) {
+                            KnownCrossings& crosses) {
   std::string reason = reason_for_winding(mesh, facts);
-  const bool is_crossing = (reason.empty() || facing_depends_on_crossings(facts)) && crosses(mesh, context);
+  const bool is_crossing = (reason.empty() || facing_depends_on_crossings(facts)) && crosses(mesh);
   if (reason.empty() && is_crossing) reason = "the mesh is closed and oriented, but it crosses or touches itself";
   if (reason.empty() && !facts.outward) {
     reason = "the mesh is closed, but its shells do not all face away from the solid";
@@ -162,23 +165,19 @@ Plan Planner::plan_oriented(const MeshView& mesh, const SiteTable& sites, const 
           .is_simple = true};
 }
 
-FacingRepair Planner::find_repair(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
-                                  const Context& context) {
-  return repair_facing(mesh, sites, facts, [&](const MeshView& turned) { return crosses(turned, context); }, context);
-}
-
 Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   const Orientation facts = orientation(mesh, sites);
-  FacingRepair repair = find_repair(mesh, sites, facts, context);
+  KnownCrossings crosses(search_, mesh, facts, context);
+  FacingRepair repair = repair_facing(mesh, sites, facts, crosses, context);
   if (repair.triangles.empty()) {
-    Plan plan = plan_oriented(mesh, sites, facts, context);
+    Plan plan = plan_oriented(mesh, sites, facts, crosses);
     add_warnings(plan, std::move(repair.warnings));
     return plan;
   }
   MeshView own = mesh;
   own.triangles = repair.triangles;
   const SiteTable own_sites(own, context);
-  Plan plan = plan_oriented(own, own_sites, orientation(own, own_sites), context);
+  Plan plan = plan_oriented(own, own_sites, orientation(own, own_sites), crosses);
   plan.reason += ", after " + repair.text;
   plan.warnings = {{WarningCode::facing, "parts of the mesh face the wrong way, and for the signs, " + repair.text}};
   add_warnings(plan, std::move(repair.warnings));
@@ -188,10 +187,11 @@ Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, c
 
 Plan Planner::plan_as_given(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   const Orientation facts = orientation(mesh, sites);
-  const bool is_crossing = facing_depends_on_crossings(facts) && crosses(mesh, context);
+  KnownCrossings crosses(search_, mesh, facts, context);
+  const bool is_crossing = facing_depends_on_crossings(facts) && crosses(mesh);
   Plan plan = plan_by_winding(rule_requested, mesh, sites, facts, is_crossing);
   if (!plan.warnings.empty()) return plan;
-  FacingRepair repair = find_repair(mesh, sites, facts, context);
+  FacingRepair repair = repair_facing(mesh, sites, facts, crosses, context);
   if (!repair.triangles.empty()) {
     plan.warnings = {{WarningCode::facing,
                       "parts of the mesh face the wrong way, so signs are not those of a solid: flip their triangles, "

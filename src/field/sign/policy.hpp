@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -66,16 +67,31 @@ class Planner {
   [[nodiscard]] Plan plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context);
 
  private:
+  /// Returns true if two triangles of a mesh cross or touch, except neighbours. Reversed triangles cross where the
+  /// given ones do. So a closed mesh of triangles, whose vertices are not joined, is searched only once for a plan.
+  class KnownCrossings {
+   public:
+    KnownCrossings(SelfIntersectionSearch& search, const MeshView& mesh, const Orientation& facts,
+                   const Context& context)
+        : search_(search),
+          context_(context),
+          is_shared_(facts.closed && mesh.segments.empty() && mesh.points.empty()) {}
+
+    [[nodiscard]] bool operator()(const MeshView& mesh);
+
+   private:
+    SelfIntersectionSearch& search_;
+    const Context& context_;
+    bool is_shared_;
+    std::optional<bool> answer_;
+  };
+
   [[nodiscard]] Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context);
   /// Returns the plan of `winding`, which was requested.
   [[nodiscard]] Plan plan_as_given(const MeshView& mesh, const SiteTable& sites, const Context& context);
-  [[nodiscard]] FacingRepair find_repair(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
-                                         const Context& context);
   /// Returns the automatic plan for a mesh that is used as it is.
-  [[nodiscard]] Plan plan_oriented(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
-                                   const Context& context);
-  /// Returns true if two triangles of a mesh cross or touch, except neighbours.
-  [[nodiscard]] bool crosses(const MeshView& mesh, const Context& context);
+  [[nodiscard]] static Plan plan_oriented(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
+                                          KnownCrossings& crosses);
 
   SelfIntersectionSearch search_;
 };
