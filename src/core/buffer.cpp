@@ -30,9 +30,7 @@ void* allocate_aligned(std::size_t bytes) {
     throw OutOfMemory("cannot allocate " + std::to_string(bytes) +
                       " bytes; use a coarser grid or a machine with more memory");
   }
-#if defined(__linux__)
-  if (alignment == huge_page) madvise(memory, bytes, MADV_HUGEPAGE);  // may fail: then page faults only cost more
-#endif
+  request_huge_pages(memory, bytes);
   return memory;
 }
 

@@ -265,9 +265,10 @@ struct ClosestPointQuery::Data {
   }
 
   /// Returns the gradient at a query on the surface.
-  [[nodiscard]] std::optional<Vec3d> gradient_on_surface(const ClosestPoint& found, const Context& context) const {
+  [[nodiscard]] static std::optional<Vec3d> gradient_on_surface(const ClosestPoint& found,
+                                                                const Pseudonormals& normals) {
     if (!found.site.has_value()) return std::nullopt;
-    const Vec3d& normal = normals(context).normal(found.site);
+    const Vec3d& normal = normals.normal(found.site);
     const double size = length(normal);
     return size > 0 ? std::optional(normal / size + Vec3d{}) : std::nullopt;  // + Vec3d{} turns -0 into 0
   }
@@ -342,7 +343,8 @@ ClosestPoint ClosestPointQuery::nearest(const Vec3d& query) const {
 
 std::optional<Vec3d> ClosestPointQuery::gradient(const Vec3d& query, const ClosestPoint& found) const {
   const std::optional<Vec3d> away = blum::gradient(query, found);
-  return away ? away : data_->gradient_on_surface(found, {});
+  if (away || !found.site.has_value()) return away;
+  return Data::gradient_on_surface(found, data_->normals({}));
 }
 
 std::vector<std::optional<Vec3d>> ClosestPointQuery::gradients(std::span<const Vec3d> queries,
@@ -361,8 +363,9 @@ std::vector<std::optional<Vec3d>> ClosestPointQuery::gradients(std::span<const V
     }
   });
   if (!is_any_on_surface) return out;
+  const Pseudonormals& normals = data_->normals(context);
   for (std::size_t k = 0; k < out.size(); ++k) {
-    if (!out[k]) out[k] = data_->gradient_on_surface(found[k], context);
+    if (!out[k]) out[k] = Data::gradient_on_surface(found[k], normals);
   }
   return out;
 }
