@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "blum/core/parallel.hpp"
+#include "surface_map/triangle_sides.hpp"
 
 namespace blum::surface {
 namespace {
@@ -24,7 +25,7 @@ class Cutter {
  private:
   void divide(const std::array<Vec3d, 3>& p, double area, std::vector<CutPiece>& out) const {
     const std::array<double, 3> squared = squared_sides(p);
-    const auto longest = static_cast<std::size_t>(std::max_element(squared.begin(), squared.end()) - squared.begin());
+    const std::size_t longest = longest_of(squared);
     if (squared[longest] <= squared_size_) return add(p, area, out);
     const Vec3d& a = p[longest];
     const Vec3d& b = p[(longest + 1) % 3];
@@ -59,10 +60,6 @@ class Cutter {
       last_b = next_b;
       last_c = next_c;
     }
-  }
-
-  static std::array<double, 3> squared_sides(const std::array<Vec3d, 3>& p) {
-    return {squared_length(p[1] - p[0]), squared_length(p[2] - p[1]), squared_length(p[0] - p[2])};
   }
 
   static void add(const std::array<Vec3d, 3>& p, double area, std::vector<CutPiece>& out) { out.push_back({p, area}); }

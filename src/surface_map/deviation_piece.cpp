@@ -10,6 +10,7 @@
 #include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/orient3d.hpp"
 #include "blum/geometry/primitives.hpp"
+#include "surface_map/triangle_sides.hpp"
 
 namespace blum::surface {
 namespace {
@@ -21,26 +22,12 @@ constexpr std::size_t most_upper = 3;
 /// Factor that makes up for rounding where a limit of a search was computed.
 constexpr double slack = 1 + 1e-9;
 
-Vec3d centroid_of(const std::array<Vec3d, 3>& corners) {
-  return (corners[0] + corners[1] + corners[2]) / 3.0;
-}
-
 double largest(const std::array<double, 3>& values) {
   return std::max({values[0], values[1], values[2]});
 }
 
 double sum(const std::array<double, 3>& values) {
   return values[0] + values[1] + values[2];
-}
-
-double longest_squared_side(const std::array<Vec3d, 3>& p) {
-  return std::max({squared_length(p[1] - p[0]), squared_length(p[2] - p[1]), squared_length(p[0] - p[2])});
-}
-
-std::size_t longest_side(const std::array<Vec3d, 3>& p) {
-  const std::array<double, 3> squared{squared_length(p[1] - p[0]), squared_length(p[2] - p[1]),
-                                      squared_length(p[0] - p[2])};
-  return static_cast<std::size_t>(std::max_element(squared.begin(), squared.end()) - squared.begin());
 }
 
 /// Returns true if two triangles with a common side lie in one plane, and are a convex quadrilateral together.
@@ -105,15 +92,12 @@ double mean_square(const std::array<double, 3>& v) {
   return (all * all + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 12;
 }
 
-DeviationPiece piece_around(const std::array<Vec3d, 3>& corners, double deviation) {
-  DeviationPiece out;
-  out.corners = corners;
-  const Vec3d centroid = centroid_of(corners);
+void set_around(DeviationPiece& piece, double deviation) {
+  const Vec3d centroid = centroid_of(piece.corners);
   for (std::size_t k = 0; k < 3; ++k) {
-    out.value[k] = deviation;
-    out.error[k] = length(corners[k] - centroid);
+    piece.value[k] = deviation;
+    piece.error[k] = length(piece.corners[k] - centroid);
   }
-  return out;
 }
 
 DeviationBounds::DeviationBounds(const MeshView& mesh, const ClosestPointQuery* signs, const Context& context)
@@ -133,7 +117,7 @@ void DeviationBounds::find_partners() {
   std::vector<std::optional<Side>> open(sites_.edge_count());
   for (std::uint32_t t = 0; t < count; ++t) {
     const std::array<Vec3d, 3> p = triangle_corners(mesh_, t);
-    const std::size_t side = longest_side(p);
+    const std::size_t side = longest_of(squared_sides(p));
     const EdgeId edge = sites_.triangle_edges()[t][side];
     if (!edge.has_value()) continue;
     const Side here{t, mesh_.triangles[t][(side + 2) % 3]};
@@ -236,7 +220,7 @@ DeviationBounds::Linear DeviationBounds::lower_bound(const DeviationPiece& piece
   if (search.is_crowded) {
     // For all points y, the square of |x - y| is linear in the weights of x, minus the sum of w_i w_j s_ij^2. This sum
     // is at most a third of the longest squared side.
-    const double most = longest_squared_side(piece.corners) / 3;
+    const double most = largest(squared_sides(piece.corners)) / 3;
     std::array<double, 3> at{};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::optional<NearestSite> near = bvh_.nearest(piece.corners[k], upper.at[k] * slack + 1e-300);
@@ -255,8 +239,9 @@ DeviationBounds::Linear DeviationBounds::lower_bound(const DeviationPiece& piece
     if (!(size > 0)) return best;
     const Vec3d normal = away / size;
     // The plane goes through the vertices of the primitive, so that rounding of the closest point does no harm.
-    const double front = std::max(front_of(one.primitive, normal, search.centroid),
-                                  front_of(partner_of(one.primitive), normal, search.centroid));
+    double front = front_of(one.primitive, normal, search.centroid);
+    const std::uint32_t partner = partner_of(one.primitive);
+    if (partner != one.primitive) front = std::max(front, front_of(partner, normal, search.centroid));
     for (std::size_t k = 0; k < 3; ++k) {
       at[k] = std::min(at[k], dot(normal, piece.corners[k] - search.centroid) - front);
     }
@@ -347,7 +332,7 @@ void DeviationBounds::sharpen(DeviationPiece& piece) const {
 }
 
 std::array<DeviationPiece, 2> DeviationBounds::halves(const DeviationPiece& piece) const {
-  const std::size_t side = piece.side < 3 ? piece.side : longest_side(piece.corners);
+  const std::size_t side = piece.side < 3 ? piece.side : longest_of(squared_sides(piece.corners));
   const std::size_t next = (side + 1) % 3;
   const Vec3d middle = (piece.corners[side] + piece.corners[next]) * 0.5;
   std::array<DeviationPiece, 2> out;

@@ -79,9 +79,9 @@ class DeviationBounds {
   std::vector<std::uint32_t> partner_;
 };
 
-/// Returns a piece whose bounds follow from the deviation of its centroid alone. Its errors are the distances of the
-/// corners from the centroid.
-[[nodiscard]] DeviationPiece piece_around(const std::array<Vec3d, 3>& corners, double deviation);
+/// Sets the bounds of a new piece, which follow from the deviation of its centroid alone. Its errors are the distances
+/// of the corners from the centroid.
+void set_around(DeviationPiece& piece, double deviation);
 
 /// Returns the mean square of a linear function over a triangle.
 /// @param values  of the function at the corners.

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "surface_map/cut_surface.hpp"
 #include "surface_map/deviation_piece.hpp"
 #include "surface_map/linear_values.hpp"
+#include "surface_map/triangle_sides.hpp"
 #include "surface_map/weighted_statistics.hpp"
 
 namespace blum {
@@ -101,7 +101,8 @@ class DeviationSearch {
   /// Makes a piece of each triangle with an area. Its bounds follow from the distance of its centroid. If the mesh has
   /// many triangles, they are cut into all pieces at once: many such bounds take less time than a few narrow ones.
   void make_pieces(double area_scale) {
-    if (mesh_.triangles.size() > most_ / triangles_for_cut) {
+    const bool is_cut = mesh_.triangles.size() > most_ / triangles_for_cut;
+    if (is_cut) {
       const double size = tolerance_.value_or(0);
       const std::vector<surface::CutPiece> cut =
           surface::cut_surface(mesh_, static_cast<double>(most_ * search_share), size, context_);
@@ -119,16 +120,12 @@ class DeviationSearch {
     centroids.reserve(pieces_.size());
     for (const DeviationPiece& piece : pieces_) {
       area.add(piece.area);
-      centroids.push_back((piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0);
+      centroids.push_back(surface::centroid_of(piece.corners));
     }
     area_ = area.value();
     const std::vector<ClosestPoint> found = query_.nearest(centroids, context_);
-    for (std::size_t k = 0; k < pieces_.size(); ++k) {
-      const double own = pieces_[k].area;
-      pieces_[k] = surface::piece_around(pieces_[k].corners, found[k].distance);
-      pieces_[k].area = own;
-    }
-    spent_ = mesh_.triangles.size() > most_ / triangles_for_cut ? most_ : pieces_.size() / search_share;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) surface::set_around(pieces_[k], found[k].distance);
+    spent_ = is_cut ? most_ : pieces_.size() / search_share;
   }
 
   void add_piece(const std::array<Vec3d, 3>& corners, double area) {
@@ -141,7 +138,7 @@ class DeviationSearch {
   [[nodiscard]] Statistics statistics() {
     Statistics out;
     LongSum mean, mean_error, square, square_error, magnitude;
-    out.smallest = out.largest = {HUGE_VAL, HUGE_VAL};
+    out.smallest = {HUGE_VAL, HUGE_VAL};
     out.largest = {-HUGE_VAL, -HUGE_VAL};
     for (const DeviationPiece& piece : pieces_) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -359,8 +356,7 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   check(options);
   Box3 box = bounds(mesh);
   const double own = scale_to_one(box.largest_coordinate());
-  box.extend(bounds(other).lower);
-  box.extend(bounds(other).upper);
+  box.extend(bounds(other));
   const double scale = scale_to_one(box.largest_coordinate());
   const std::array<std::vector<Vec3d>, 2> vertices{scaled(mesh.vertices, scale), scaled(other.vertices, scale)};
   std::array<MeshView, 2> meshes{mesh, other};
