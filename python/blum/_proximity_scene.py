@@ -708,6 +708,14 @@ class _Alone(AbstractContextManager[None]):
         self._scene._busy.release()
 
 
+def scene_of_named(named: Sequence[tuple[str, MeshLike]], threads: int, compare_self: bool = False) -> ProximityScene:
+    """Returns a scene of named meshes."""
+    scene = ProximityScene()
+    for name, mesh in named:
+        scene.add(as_mesh(mesh, name=name), name=name, compare_self=compare_self, threads=threads)
+    return scene
+
+
 def separation(
     a: MeshLike, b: MeshLike, *, max_distance: Real = np.inf, threads: int = 0, progress: Progress = False
 ) -> PrimitivePair | None:
@@ -732,9 +740,7 @@ def separation(
     >>> found.distance, found.closest[:, 0].tolist()
     (2.0, [0.5, 2.5])
     """
-    scene = ProximityScene()
-    for name, mesh in (("a", a), ("b", b)):
-        scene.add(as_mesh(mesh, name=name), name=name, threads=threads)
+    scene = scene_of_named((("a", a), ("b", b)), threads)
     return scene.separation(0, 1, max_distance, threads=threads, progress=progress)
 
 
@@ -823,10 +829,7 @@ def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, 
     if not several:
         raise InvalidMesh("meshes is empty: give at least one mesh")
     own = len(several) == 1 if compare_self is None else truth(compare_self, "compare_self")
-    scene = ProximityScene()
-    for name, mesh in several:
-        scene.add(as_mesh(mesh, name=name), name=name, compare_self=own, threads=threads)
-    return scene
+    return scene_of_named(several, threads, own)
 
 
 def _motions_of(motions: Any) -> list[tuple[Any, Any]]:

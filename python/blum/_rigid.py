@@ -5,12 +5,21 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import FloatArray, as_array, matrix, triple
 from ._errors import InvalidOption
 
 __all__ = ["closest_rotation"]
+
+
+def _real(value: Any, name: str) -> npt.NDArray[Any]:
+    """Returns an array of real numbers."""
+    rows = as_array(value, name)
+    if rows.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold real numbers, not {rows.dtype}")
+    return rows
 
 
 def closest_rotation(matrix: Any) -> FloatArray:
@@ -32,9 +41,7 @@ def closest_rotation(matrix: Any) -> FloatArray:
     >>> bool(np.abs(rotation.T @ rotation - np.eye(3)).max() < 1e-15)
     True
     """
-    rows = as_array(matrix, "matrix")
-    if rows.dtype.kind not in "fiu":
-        raise TypeError(f"matrix must hold real numbers, not {rows.dtype}")
+    rows = _real(matrix, "matrix")
     if rows.shape not in ((3, 3), (3, 4), (4, 4)):
         raise ValueError(f"matrix has the shape {rows.shape}, but must have (3, 3), (3, 4) or (4, 4)")
     out: FloatArray = np.array(rows, dtype=np.float64)
@@ -49,9 +56,7 @@ def as_place(transform: Any) -> FloatArray:
         out[:, :3] = matrix(transform[0], "transform[0]")
         out[:, 3] = triple(transform[1], "transform[1]")
         return out
-    rows = as_array(transform, "transform")
-    if rows.dtype.kind not in "fiu":
-        raise TypeError(f"transform must hold real numbers, not {rows.dtype}")
+    rows = _real(transform, "transform")
     if rows.shape not in ((4, 4), (3, 4)):
         raise ValueError(
             f"transform has the shape {rows.shape}, but must have (4, 4) or (3, 4), or be a pair "
@@ -64,9 +69,7 @@ def as_place(transform: Any) -> FloatArray:
 
 def as_places(transforms: Any) -> FloatArray:
     """Returns transforms as (n, 3, 4) or (n, 4, 4)."""
-    rows = as_array(transforms, "transforms")
-    if rows.dtype.kind not in "fiu":
-        raise TypeError(f"transforms must hold real numbers, not {rows.dtype}")
+    rows = _real(transforms, "transforms")
     if rows.ndim != 3 or rows.shape[1:] not in ((4, 4), (3, 4)):
         raise ValueError(f"transforms has the shape {rows.shape}, but must have (n, 4, 4) or (n, 3, 4)")
     if rows.shape[1] == 4 and not (rows[:, 3] == [0, 0, 0, 1]).all():

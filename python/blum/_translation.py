@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Unpack
 
-from ._mesh import MeshLike, as_mesh
+from ._mesh import MeshLike
 from ._options import takes
 from ._progress import Progress
-from ._proximity_scene import ProximityScene
+from ._proximity_scene import scene_of_named
 from ._structs import LeastTranslation, TranslationOptions
 
 __all__ = ["least_translation"]
@@ -38,7 +38,5 @@ def least_translation(
     >>> round(found.lower, 6), round(found.upper, 6), round(found.translation[0], 6)
     (0.25, 0.25, -0.25)
     """
-    scene = ProximityScene()
-    for name, mesh in (("a", a), ("b", b)):
-        scene.add(as_mesh(mesh, name=name), name=name, threads=threads)
+    scene = scene_of_named((("a", a), ("b", b)), threads)
     return scene.least_translation(0, 1, threads=threads, progress=progress, **options)

@@ -151,12 +151,7 @@ bool FirstSearch::is_hopeless(ObjectId first, ObjectId second, double bound) con
 std::vector<FirstSearch::Feature> FirstSearch::features_of(const std::vector<Side>& sides) const {
   std::vector<Feature> all;
   for (const Side& side : sides) {
-    MovingBox whole;
-    for (std::uint32_t v : side.b.features().vertices()) {
-      const MovingBox box = side.b.box({&v, 1});
-      whole.start.extend(box.start);
-      whole.end.extend(box.end);
-    }
+    const MovingBox whole = side.b.box(side.b.features().vertices());
     for (std::uint32_t k = 0; k < side.count(); ++k) {
       all.push_back({bound(side.a.box(side.of_a(k)), whole), side.kind, k});
     }

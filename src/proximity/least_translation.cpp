@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <queue>
 #include <span>
@@ -16,9 +15,11 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/scale.hpp"
+#include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/surface_components.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/geometry/winding_number.hpp"
 #include "blum/proximity/scene.hpp"
@@ -53,7 +54,7 @@ void weld(TriangleMesh& mesh) {
   for (Triangle& t : mesh.triangles) {
     for (std::uint32_t& v : t) v = cluster[v];
   }
-  std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  std::erase_if(mesh.triangles, names_vertex_twice);
 }
 
 /// A side of a triangle, with the smaller vertex first, and the corner opposite to it.
@@ -86,15 +87,21 @@ Vec3d normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
   return cross(b - a, c - a);
 }
 
+/// Returns the vertices that triangles use.
+std::vector<Vec3d> used_vertices(const TriangleMesh& mesh) {
+  std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
+  for_each_named_vertex(mesh, [&](std::uint32_t v) { is_used[v] = 1; });
+  std::vector<Vec3d> out;
+  for (std::size_t v = 0; v < is_used.size(); ++v) {
+    if (is_used[v] != 0) out.push_back(mesh.vertices[v]);
+  }
+  return out;
+}
+
 /// Returns true if a surface is convex at each of its edges, and a sphere in shape. Such a surface is convex.
 bool is_convex(const TriangleMesh& mesh, const std::vector<SideOf>& sides, std::size_t parts) {
   if (parts != 1) return false;
-  std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) is_used[v] = 1;
-  }
-  const auto vertices = static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), std::uint8_t{1}));
-  if (vertices + mesh.triangles.size() != sides.size() / 2 + 2) return false;
+  if (used_vertices(mesh).size() + mesh.triangles.size() != sides.size() / 2 + 2) return false;
   for (std::size_t k = 0; k < sides.size(); k += 2) {
     if (k + 1 >= sides.size() || sides[k].ends != sides[k + 1].ends) return false;
     if (k + 2 < sides.size() && sides[k + 2].ends == sides[k].ends) return false;
@@ -118,8 +125,7 @@ std::vector<Vec3d> vertex_of_each_part(const TriangleMesh& mesh) {
   }
   std::vector<std::uint32_t> roots;
   for (const Triangle& t : mesh.triangles) roots.push_back(parts.find(t[0]));
-  std::sort(roots.begin(), roots.end());
-  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  sort_unique(roots);
   std::vector<Vec3d> out;
   for (const std::uint32_t v : roots) out.push_back(mesh.vertices[v]);
   return out;
@@ -150,19 +156,6 @@ TranslatedSolid solid_of(TriangleMesh mesh) {
   out.is_convex = is_convex(mesh, sides_of(mesh), out.inner.size());
   out.normals = largest_normals(mesh, most_normals);
   out.mesh = std::move(mesh);
-  return out;
-}
-
-/// Returns the vertices that triangles use.
-std::vector<Vec3d> used_vertices(const TriangleMesh& mesh) {
-  std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) is_used[v] = 1;
-  }
-  std::vector<Vec3d> out;
-  for (std::size_t v = 0; v < is_used.size(); ++v) {
-    if (is_used[v] != 0) out.push_back(mesh.vertices[v]);
-  }
   return out;
 }
 
@@ -305,7 +298,7 @@ bool OverlappingSolids::are_apart(const Vec3d& translation) {
   RigidTransform place;
   place.translation = translation;
   scene_.update(moving_, place);
-  if (scene_.separation(moving_, resting_, 0, context_)) return false;
+  if (scene_.meets(moving_, resting_, context_)) return false;
   const auto is_in_second = [&](const Vec3d& p) { return inside_second_.contains(p + translation); };
   const auto is_in_first = [&](const Vec3d& p) { return inside_first_.contains(p - translation); };
   return std::none_of(first_.inner.begin(), first_.inner.end(), is_in_second) &&
@@ -422,9 +415,7 @@ class TranslationSearch {
 
   void normalise(TriangleMesh& first, TriangleMesh& second) {
     Box3 box = bounds(first);
-    const Box3 other = bounds(second);
-    box.extend(other.lower);
-    box.extend(other.upper);
+    box.extend(bounds(second));
     const Vec3d size = box.size();
     scale_ = scale_to_one(std::max({size.x, size.y, size.z}));
     const Vec3d center = box.center();

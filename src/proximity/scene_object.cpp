@@ -133,6 +133,12 @@ std::array<std::uint32_t, 3> SceneObject::vertices(std::uint32_t primitive) cons
   return primitive_vertices(mesh_, primitive);
 }
 
+std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive) const {
+  if (is_placed_) return corners(primitive, place_);
+  const auto [a, b, c] = vertices(primitive);
+  return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+}
+
 std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive, const RigidTransform& place) const {
   const auto [a, b, c] = vertices(primitive);
   const std::vector<Vec3d>& v = mesh_.vertices;

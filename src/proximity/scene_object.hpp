@@ -40,7 +40,7 @@ class SceneObject {
   /// Returns the vertices of a primitive. Those of a segment or point are repeated.
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
   /// Returns the positions of a primitive's vertices in the scene.
-  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const { return corners(primitive, place_); }
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
   /// Returns the positions of a primitive's vertices with the object at another place.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive, const RigidTransform& place) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
