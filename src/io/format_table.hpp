@@ -36,6 +36,11 @@ namespace tables {
 struct RowFile;
 }
 
+/// Returns the format of a mesh whose extension is not known, by its first bytes and its size. A pipe is kept, as by
+/// read_file_head(). @throws as read_whole_file().
+[[nodiscard]] std::optional<MeshFormat> mesh_format_by_content(const std::filesystem::path& path,
+                                                               std::string_view head);
+
 }  // namespace blum
 
 namespace blum::formats {

@@ -167,12 +167,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t head_size = 8192;
-
-std::string read_head(const fs::path& path) {
-  return read_file_head(path, head_size);
-}
-
 /// Returns true if a NRRD header declares floating-point values.
 bool holds_floats(std::string_view head) {
   std::istringstream lines{std::string(head.substr(0, head.find("\n\n")))};
@@ -208,7 +202,7 @@ std::optional<MeshFormat> mesh_format_by_content(const fs::path& path, std::stri
 }
 
 FileContent content_of(const fs::path& path) {
-  const std::string head = read_head(path);
+  const std::string head = read_file_head(path);
   if (MeshFormat::by_name(path)) return FileContent::mesh;
   if (holds(ComplexFormat::by_name(path), path, head)) return FileContent::complex;
   if (holds(FieldFormat::by_name(path), path, head)) return FileContent::field;
@@ -227,31 +221,31 @@ FileContent content_of(const fs::path& path) {
 }
 
 bool holds_complex(const fs::path& path) {
-  return holds(ComplexFormat::by_name(path), path, read_head(path));
+  return holds(ComplexFormat::by_name(path), path, read_file_head(path));
 }
 
 bool may_hold_field(const fs::path& path) {
   const FileContent content = content_of(path);
   if (content == FileContent::field) return true;
-  return content == FileContent::image && file_extension(path) == ".nrrd" && holds_floats(read_head(path));
+  return content == FileContent::image && file_extension(path) == ".nrrd" && holds_floats(read_file_head(path));
 }
 
 MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& options) {
   if (MeshFormat::by_name(path)) return read_mesh_file(path, options);
-  const auto format = mesh_format_by_content(path, read_head(path));
+  const auto format = mesh_format_by_content(path, read_file_head(path));
   if (!format) return read_mesh_file(path, options);  // throws the appropriate error
   return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
 }
 
 ImageFile read_image_of_any_name(const fs::path& path) {
   if (ImageFormat::by_name(path)) return read_image_file(path);
-  const auto format = ImageFormat::by_head(read_head(path));
+  const auto format = ImageFormat::by_head(read_file_head(path));
   if (!format) return read_image_file(path);
   return read_image_file(read_whole_file(path).span(), *format, path.string());
 }
 
 std::string_view image_format_name(const fs::path& path) {
-  const std::optional<ImageFormat> format = image_format(path, read_head(path));
+  const std::optional<ImageFormat> format = image_format(path, read_file_head(path));
   return format ? std::string_view(format->name()) : "unknown";
 }
 

@@ -32,9 +32,9 @@ namespace blum::cli {
 [[nodiscard]] TextTable mesh_table(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                                    const Orientation& facts);
 
-/// Returns the file, format, value type and grid of an image as JSON.
 /// Returns the name of a format; "unknown" if there is none.
 [[nodiscard]] std::string format_name(const std::optional<ImageFormat>& format);
+/// Returns the file, format, value type and grid of an image as JSON.
 [[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image,
                               const std::optional<ImageFormat>& format);
 [[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image,

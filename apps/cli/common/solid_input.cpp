@@ -1,13 +1,12 @@
 #include "common/solid_input.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
+#include <cstddef>
 #include <utility>
 
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/grid/selected_voxels.hpp"
+#include "blum/grid/voxel_set.hpp"
 #include "common/input_facts.hpp"
 #include "common/options.hpp"
 #include "common/progress.hpp"
@@ -51,30 +50,18 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
 
 double size_of(const SolidInput& input, const LabelSelection& selection, const Context& context) {
   if (input.kind == InputKind::mesh) return bounds(input.mesh.mesh).diagonal();
-  const VoxelSet voxels = selected_voxels(input.image, selection, context);
-  std::array<std::int64_t, 3> least = voxels.size();
-  std::array<std::int64_t, 3> most{-1, -1, -1};
-  const auto extend = [&](std::size_t axis, std::int64_t at) {
-    least[axis] = std::min(least[axis], at);
-    most[axis] = std::max(most[axis], at);
-  };
-  for (std::int64_t k = 0; k < voxels.size()[2]; ++k) {
-    for (std::int64_t j = 0; j < voxels.size()[1]; ++j) {
-      const auto words = voxels.row(j, k);
-      for (std::size_t w = 0; w < words.size(); ++w) {
-        if (words[w] == 0) continue;
-        extend(0, static_cast<std::int64_t>(64 * w) + std::countr_zero(words[w]));
-        extend(0, static_cast<std::int64_t>(64 * w) + 63 - std::countl_zero(words[w]));
-        extend(1, j);
-        extend(2, k);
-      }
-    }
-  }
+  const VoxelExtent extent = extent_of(selected_voxels(input.image, selection, context));
+  if (extent.upper[0] == 0) return 0;
   Vec3d sides;
   for (std::size_t a = 0; a < 3; ++a) {
-    sides[a] = static_cast<double>(most[a] - least[a] + 1) * input.image.grid.spacing[a];
+    sides[a] = static_cast<double>(extent.upper[a] - extent.lower[a]) * input.image.grid.spacing[a];
   }
-  return most[0] < 0 ? 0 : length(sides);
+  return length(sides);
+}
+
+InputKind kind_of_input(const std::filesystem::path& path) {
+  const Unattended reading;
+  return input_kind(path);
 }
 
 std::vector<LabelSelection> Selections::all() const {

@@ -35,6 +35,10 @@ struct SolidInput {
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld,
                                     std::span<const std::int64_t> labels = {});
 
+/// Returns the result of input_kind(). A signal ends the program at once, because a pipe may wait for its writer.
+/// @throws as input_kind().
+[[nodiscard]] InputKind kind_of_input(const std::filesystem::path& path);
+
 /// Returns the warnings about an input. Images: those of the file. Meshes: a weld tolerance changed the number of
 /// components or the Euler number.
 [[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);

@@ -170,13 +170,14 @@ std::string point_text(const Vec3d& point, double size) {
   return vector_text(shown);
 }
 
-std::string share_text(double length, double size) {
+std::string share_text(double length, double size, std::string_view unit) {
   constexpr double least_share = 0.001;
   const double share = length / size;
-  if (!(share >= least_share && std::isfinite(share))) return rounded_text(length);
+  const std::string text = rounded_text(length) + std::string(unit);
+  if (!(share >= least_share && std::isfinite(share))) return text;
   const double percent = 100 * share;
   const double shown = percent < 10 ? std::round(percent * 10) / 10 : std::round(percent);
-  return rounded_text(length) + " (" + rounded_text(shown) + " % of the size)";
+  return text + " (" + rounded_text(shown) + " % of the size)";
 }
 
 }  // namespace blum::cli

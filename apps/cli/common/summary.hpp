@@ -42,7 +42,8 @@ class Stopwatch {
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
 /// Returns a length as text. From a thousandth of the size of a shape on, adds the share: "23 (7.5 % of the size)".
 /// @param size  diagonal of the shape's box, in the unit of the length; 0 if it is unknown.
-[[nodiscard]] std::string share_text(double length, double size);
+/// @param unit  text that follows the length.
+[[nodiscard]] std::string share_text(double length, double size, std::string_view unit = {});
 /// Returns the range of the distances in a field as text.
 [[nodiscard]] std::string node_range_text(double smallest, double largest, bool is_signed);
 /// Returns a text like "by normals, because the mesh is closed". `reason` may be empty.

@@ -306,8 +306,9 @@ class AxisDrafts {
 };
 
 /// Adds the axis for one angle to the results.
+/// @param size  the result of size_of() for the solid.
 void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const CertifiedAxis& made, bool model_passes,
-              Draft&& draft, Json& axes, const Context& context) {
+              double size, Draft&& draft, Json& axes, const Context& context) {
   const SolidInput& input = solid.input;
   const Certificate& certificate = made.certificate;
   const MedialMetadata metadata = for_file(made.metadata, r, input, solid.selection);
@@ -317,7 +318,6 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
   run.warnings.insert(run.warnings.end(), made.warnings.begin(), made.warnings.end());
   run.is_kept.push_back((certificate.holds() && model_passes) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
-  const double size = size_of(input, solid.selection, context);
   add_certificate(run.table, " at theta " + rounded_text(theta), certificate, r.nested, size);
   add_axis_counts(run.table, "", counts, true);
   add_decimated(run.table, made, size);
@@ -378,8 +378,9 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
   add_report(run, made.report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
   run.mismatches.insert(run.mismatches.end(), made.mismatches.begin(), made.mismatches.end());
   Json axes = Json::array();
+  const double size = size_of(solid.input, solid.selection, context);
   for (const CertifiedAxis& axis : made.axes) {
-    add_axis(run, r, solid, axis, made.report.topology_matches,
+    add_axis(run, r, solid, axis, made.report.topology_matches, size,
              std::move(drafts.draft_of(made.grid_shift, *axis.metadata.theta)), axes, context);
   }
   json["axes"] = axes;

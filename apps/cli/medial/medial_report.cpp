@@ -146,13 +146,13 @@ bool has_thickness(const Complex& complex) {
 }
 
 /// Returns the parts of a file that are shown for any content but a medial axis.
-ShownAxis shown_complex(ComplexFile&& file, const std::string& content) {
+ShownAxis shown_complex(Complex&& complex, const FileMetadata& metadata, const std::string& content) {
   ShownAxis out;
   out.content = content;
   out.is_axis = false;
   out.is_plain = is_plain_content(content);
-  out.file.complex = std::move(file.complex);
-  out.file.metadata.source = text_of(file.metadata, "source");
+  out.file.complex = std::move(complex);
+  out.file.metadata.source = text_of(metadata, "source");
   return out;
 }
 
@@ -231,24 +231,23 @@ ShownAxis read_axis_or_curves(const std::filesystem::path& path) {
     const std::string content = text_of(file.metadata, "content");
     const bool is_diagram = content.ends_with("Voronoi diagram") && has_walls(file.complex);
     if (content == extended_axis && has_thickness(file.complex)) {
-      ShownAxis out = shown_complex(std::move(file), content);
+      ShownAxis out = shown_complex(std::move(file.complex), file.metadata, content);
       out.file.has_radii = out.file.has_labels = true;
       add_radii(out.file.complex);
       return out;
     }
     if (is_plain_content(content)) {
-      ShownAxis out = shown_complex(std::move(file), content);
+      ShownAxis out = shown_complex(std::move(file.complex), file.metadata, content);
       add_missing_medial_columns(out.file.complex);
       return out;
     }
     if (is_diagram || (content == centrelines && has_branches(file.complex))) {
-      const FileMetadata metadata = file.metadata;
-      ShownAxis out = shown_complex(std::move(file), content);
+      ShownAxis out = shown_complex(std::move(file.complex), file.metadata, content);
       out.file.has_radii = true;
       out.file.has_footprints = out.file.has_sites = out.file.has_angles = is_diagram;
       add_missing_medial_columns(out.file.complex);
       if (is_diagram) {
-        add_certified(metadata, out);
+        add_certified(file.metadata, out);
         number_walls(out.file.complex);
       } else {
         out.file.metadata.site_ids = SiteIds::voxels;

@@ -142,10 +142,7 @@ void run(const Arguments& a) {
   std::vector<Warning> warnings;
   // Reading the input may fail, so it is read before anything is written.
   if (r.input) {
-    const InputKind kind = [&] {
-      const Unattended reading;
-      return input_kind(*r.input);
-    }();
+    const InputKind kind = kind_of_input(*r.input);
     const auto [selection, found] = solid_of_axis(r.given, kind, file.metadata, r.axis);
     warnings = found;
     const SolidInput input = load_solid(*r.input, selection.weld, labels_of(selection));

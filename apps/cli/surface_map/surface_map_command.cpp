@@ -237,11 +237,10 @@ void run(const Arguments& a) {
   table.add("map", quantity_text(map.quantity) + "; " + count_text(facts.texels) + " texels used in a texture of " +
                        std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height));
   const std::string unit = a.units.empty() ? "" : " " + a.units;
-  const double size = bounds(target.mesh).diagonal();
-  const double worst = facts.largest_error;
-  std::string error = share_text(worst, size);
-  error.insert(rounded_text(worst).size(), unit);
-  if (!map.error.empty()) table.add("error", "at most " + error + " between texels");
+  if (!map.error.empty()) {
+    const double size = bounds(target.mesh).diagonal();
+    table.add("error", "at most " + share_text(facts.largest_error, size, unit) + " between texels");
+  }
   if (facts.without > 0) table.add("no value", plural(facts.without, "texel", "texels"));
   if (!facts.smallest.is_null()) table.add("smallest", place_text(facts.smallest));
   if (!facts.largest.is_null()) table.add("largest", place_text(facts.largest));

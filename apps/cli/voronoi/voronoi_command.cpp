@@ -67,11 +67,7 @@ bool is_wall(std::int32_t site_a) {
 }
 
 SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
-  const InputKind kind = [&] {
-    const Unattended reading;
-    return input_kind(path);
-  }();
-  if (kind != InputKind::mesh) {
+  if (kind_of_input(path) != InputKind::mesh) {
     throw FileError("'" + path.string() + "' is not a mesh; `blum voronoi` needs a closed mesh");
   }
   return load_solid(path, weld);

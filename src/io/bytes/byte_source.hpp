@@ -152,10 +152,12 @@ namespace blum {
 /// @throws FileError if it cannot be read, or is a directory or a device; OutOfMemory.
 [[nodiscard]] FileBytes read_whole_file(const std::filesystem::path& path);
 
+inline constexpr std::size_t head_size = 8192;  ///< Number of bytes that show the format of a file.
+
 /// Returns the first bytes of a file, at most `size`. A pipe can be read only once, so all its bytes are kept in memory
 /// until the next call of read_whole_file() for the same pipe. Any thread may call this function.
 /// @throws as read_whole_file().
-[[nodiscard]] std::string read_file_head(const std::filesystem::path& path, std::size_t size);
+[[nodiscard]] std::string read_file_head(const std::filesystem::path& path, std::size_t size = head_size);
 
 /// Returns the number of bytes of a file. A pipe is read and kept, as by read_file_head().
 /// @throws as read_whole_file().

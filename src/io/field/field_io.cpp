@@ -18,8 +18,6 @@
 namespace blum {
 namespace {
 
-constexpr std::size_t head_size = 8192;  // bytes that show the format of a file
-
 void check_sizes(const Field& field) {
   validate(field.grid);
   const std::size_t nodes = field.grid.node_count();
@@ -58,7 +56,7 @@ void write_field(const std::filesystem::path& path, const Field& field, const Fi
 Field read_field(const std::filesystem::path& path) {
   std::optional<FieldFormat> format = FieldFormat::by_name(path);
   std::error_code ignored;
-  if (!format && std::filesystem::exists(path, ignored)) format = FieldFormat::by_head(read_file_head(path, head_size));
+  if (!format && std::filesystem::exists(path, ignored)) format = FieldFormat::by_head(read_file_head(path));
   if (!format) format = FieldFormat::of(path);  // before the file is opened, for its error
   return read(volume_io::FileSource(path), *format, path);
 }

@@ -40,9 +40,6 @@ void set_frame(GridSpec& grid, const std::array<Vec3d, 3>& unit_axes, const Vec3
 /// step 1 and a direction perpendicular to the others.
 void set_frame(GridSpec& grid, const std::array<std::optional<Vec3d>, 3>& steps, const std::string& name);
 
-/// Returns true if the vectors are non-zero, finite and perpendicular within the tolerance.
-[[nodiscard]] bool is_perpendicular(const std::array<Vec3d, 3>& axes);
-
 /// Returns the first pair of axes that are not perpendicular, with their angle: "axes x and y form an angle of 84
 /// degrees". Axes that are zero or not finite are skipped. Returns an empty text if all pairs are perpendicular.
 [[nodiscard]] std::string shear_text(const std::array<Vec3d, 3>& axes);

@@ -107,13 +107,6 @@ Vec3d perpendicular(const std::array<std::optional<Vec3d>, 3>& known, std::size_
 
 }  // namespace
 
-bool is_perpendicular(const std::array<Vec3d, 3>& axes) {
-  for (const Vec3d& axis : axes) {
-    if (!is_finite(axis) || !(largest_component(axis) > 0)) return false;
-  }
-  return shear_text(axes).empty();
-}
-
 std::string shear_text(const std::array<Vec3d, 3>& axes) {
   constexpr std::array<std::array<std::size_t, 2>, 3> pairs{{{0, 1}, {1, 2}, {0, 2}}};
   const auto is_direction = [](const Vec3d& axis) { return is_finite(axis) && largest_component(axis) > 0; };

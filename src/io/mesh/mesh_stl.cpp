@@ -143,6 +143,12 @@ class TextStlReader {
   MeshBuilder builder_;
 };
 
+/// Returns true if a file has the size that follows from the number of triangles in its header.
+bool has_stated_size(std::string_view head, std::uint64_t size) {
+  return head.size() >= header_size &&
+         size == header_size + std::uint64_t{triangle_size} * little_endian_word(head.data() + 80);
+}
+
 /// Returns true if the text begins with the word "solid".
 bool begins_with_solid(std::string_view bytes) {
   TextCursor cursor(bytes.substr(0, 4096), "", 0);
@@ -153,10 +159,7 @@ bool begins_with_solid(std::string_view bytes) {
 /// even if it starts with "solid". Any other file is text if it starts with "solid" and has no zero byte near its
 /// start.
 bool is_binary(std::string_view bytes) {
-  if (bytes.size() >= header_size) {
-    const std::size_t count = little_endian_word(bytes.data() + 80);
-    if (bytes.size() == header_size + triangle_size * count) return true;
-  }
+  if (has_stated_size(bytes, bytes.size())) return true;
   if (!begins_with_solid(bytes)) return true;
   return bytes.substr(0, 1024).find('\0') != std::string_view::npos;
 }
@@ -214,9 +217,7 @@ void write_stl(const std::filesystem::path& path, const MeshView& mesh) {
 }  // namespace
 
 bool volume_io::is_binary_stl(std::string_view head, std::uint64_t size) {
-  if (head.size() < header_size) return false;
-  const std::uint64_t count = little_endian_word(head.data() + 80);
-  return count > 0 && size == header_size + triangle_size * count;
+  return size > header_size && has_stated_size(head, size);
 }
 
 namespace {

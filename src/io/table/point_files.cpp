@@ -18,7 +18,6 @@
 #include "io/bytes/byte_source.hpp"
 #include "io/complex/complex_ply_names.hpp"
 #include "io/format_table.hpp"
-#include "io/mesh/mesh_stl.hpp"
 #include "io/table/table_files.hpp"
 #include "io/text/text_cursor.hpp"
 
@@ -161,8 +160,6 @@ void write_npz(const std::filesystem::path& path, const Complex& points, const F
   tables::write_npz(path, std::span(&table, 1), metadata, context);
 }
 
-constexpr std::size_t head_size = 8192;  // bytes that show the format of a file
-
 /// Returns true if the first lines of a file are rows of numbers, perhaps after a row of names.
 bool begins_as_rows(std::string_view head) {
   // The last line may be cut off.
@@ -177,7 +174,7 @@ bool begins_as_rows(std::string_view head) {
 
 /// Reads points from a file whose extension is not known. Its content decides the format.
 std::vector<Vec3d> read_points_by_content(const std::filesystem::path& path) {
-  const std::string head = read_file_head(path, head_size);
+  const std::string head = read_file_head(path);
   if (head.starts_with("\x93NUMPY")) return read_npy(path);
   if (head.starts_with("PK\x03\x04")) return read_npz(path);
   if (head.starts_with("ply\n") || head.starts_with("ply\r")) {

@@ -74,44 +74,9 @@ VoxelSolid solid_of(Field field) {
   return solid;
 }
 
-/// Smallest box that contains all voxels of a set. The upper corner is exclusive.
-struct Extent {
-  Place lower{std::numeric_limits<std::int64_t>::max(), 0, 0};
-  Place upper{0, 0, 0};
-};
-
-Extent extent_of(const VoxelSet& voxels) {
-  constexpr auto far = std::numeric_limits<std::int64_t>::max();
-  Extent out{{far, far, far}, {0, 0, 0}};
-  const Place& size = voxels.size();
-  const auto include = [&](const Place& at) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      out.lower[a] = std::min(out.lower[a], at[a]);
-      out.upper[a] = std::max(out.upper[a], at[a] + 1);
-    }
-  };
-  for (std::int64_t k = 0; k < size[2]; ++k) {
-    for (std::int64_t j = 0; j < size[1]; ++j) {
-      const auto row = voxels.row(j, k);
-      std::int64_t first = -1;
-      std::int64_t last = -1;
-      for (std::size_t w = 0; w < row.size(); ++w) {
-        if (row[w] == 0) continue;
-        const auto base = static_cast<std::int64_t>(64 * w);
-        if (first < 0) first = base + std::countr_zero(row[w]);
-        last = base + 63 - std::countl_zero(row[w]);
-      }
-      if (first < 0) continue;
-      include({first, j, k});
-      include({last, j, k});
-    }
-  }
-  return out;
-}
-
 /// Returns an image of the box `extent` plus one layer of voxels on each side. Its values are 1 for voxels of the set
 /// and 0 for others.
-VoxelImage cut_out(const VoxelSet& voxels, const Extent& extent, const GridSpec& grid) {
+VoxelImage cut_out(const VoxelSet& voxels, const VoxelExtent& extent, const GridSpec& grid) {
   VoxelImage image;
   image.grid = grid;
   image.grid.origin = grid.position(extent.lower[0] - 1, extent.lower[1] - 1, extent.lower[2] - 1);
@@ -179,7 +144,7 @@ Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Contex
 Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
                          const Context& context) {
   Voxelized out;
-  const Extent extent = extent_of(all);
+  const VoxelExtent extent = extent_of(all);
   for (std::size_t a = 0; a < 3; ++a) first[a] = extent.lower[a] - 1;
   const VoxelImage cut = cut_out(all, extent, grid);
   VoxelSet voxels = selected_voxels(cut, {}, context);
