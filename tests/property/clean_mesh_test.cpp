@@ -20,6 +20,7 @@
 #include "blum/shapes/shape_catalog.hpp"
 #include "blum/surface_map/hausdorff_distance.hpp"
 #include "support/data.hpp"
+#include "support/mesh_places.hpp"
 #include "support/model_solids.hpp"
 #include "support/shape_names.hpp"
 
@@ -45,13 +46,6 @@ double check_cleaning(const MeshView& mesh, double part, const std::string& name
   // The tolerance covers the rounding of the distances themselves.
   EXPECT_LE(found.lower, out.report.deviation * (1 + 1e-9) + 1e-14 * bounds(mesh).largest_coordinate()) << name;
   return static_cast<double>(out.report.triangles) / static_cast<double>(out.report.triangles_before);
-}
-
-TriangleMesh in_single_precision(TriangleMesh mesh) {
-  for (Vec3d& v : mesh.vertices) {
-    for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = static_cast<double>(static_cast<float>(v[axis]));
-  }
-  return mesh;
 }
 
 TriangleMesh fine(const MeshView& mesh, std::size_t most) {
@@ -85,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, CleanedShapes, testing::ValuesIn(test::catal
 TEST(CleanedSolids, InSinglePrecisionTurned) {
   const std::vector<TriangleMesh> shapes{make_gear(), make_bracket(), make_plate(), make_star()};
   for (std::size_t k = 0; k < shapes.size(); ++k) {
-    const TriangleMesh turned = in_single_precision(test::turned(fine(shapes[k], 12'000), k + 1));
+    const TriangleMesh turned = test::in_single_precision(test::turned(fine(shapes[k], 12'000), k + 1));
     if (!bounds_a_solid(turned)) continue;
     EXPECT_LT(check_cleaning(turned, 1e-6, std::to_string(k)), 0.4) << k;
     EXPECT_LT(check_cleaning(turned, 1e-4, std::to_string(k)), 0.4) << k;

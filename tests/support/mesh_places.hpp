@@ -33,6 +33,19 @@ inline TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
+/// A number rounded to single precision. Without `volatile`, GCC 12 drops the rounding of neighbouring numbers that are
+/// stored where they came from (findings/rounding-vanishes.sh).
+inline double in_single_precision(double value) {
+  const volatile float rounded = static_cast<float>(value);
+  return static_cast<double>(rounded);
+}
+
+/// A mesh with coordinates rounded to single precision, as in .stl files.
+inline TriangleMesh in_single_precision(TriangleMesh mesh) {
+  for (Vec3d& v : mesh.vertices) v = {in_single_precision(v.x), in_single_precision(v.y), in_single_precision(v.z)};
+  return mesh;
+}
+
 /// A mesh in which each triangle has its own three vertices.
 inline TriangleMesh unwelded(const MeshView& mesh) {
   TriangleMesh out;

@@ -13,6 +13,7 @@
 #include "blum/core/error.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/emulated_backend.hpp"
+#include "support/mesh_places.hpp"
 
 namespace blum {
 namespace {
@@ -67,12 +68,6 @@ void expect_same(const Output& output, const Field& field) {
   EXPECT_EQ(0, std::memcmp(output.site.data(), field.site.data(), field.site.span().size_bytes()));
 }
 
-/// Rounds the vertices to float.
-TriangleMesh rounded(TriangleMesh mesh) {
-  for (Vec3d& v : mesh.vertices) v = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  return mesh;
-}
-
 template <class Real, class Index>
 void expect_field_of(const TriangleMesh& mesh, const FieldOptions& options = {}) {
   const GridSpec grid = grid_around(bounds(mesh), 20, 0.2);
@@ -87,7 +82,7 @@ void expect_field_of(const TriangleMesh& mesh, const FieldOptions& options = {})
 }
 
 TEST_F(DeviceField, EqualsTheHostFieldForAllTypesOfArrays) {
-  const TriangleMesh mesh = rounded(make_gear({}));
+  const TriangleMesh mesh = test::in_single_precision(make_gear({}));
   expect_field_of<double, std::uint32_t>(mesh);
   expect_field_of<float, std::int32_t>(mesh);
   expect_field_of<float, std::int64_t>(mesh);
