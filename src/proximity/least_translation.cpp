@@ -19,7 +19,7 @@
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/geometry/surface_components.hpp"
+#include "blum/geometry/triangle_components.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/geometry/winding_number.hpp"
 #include "blum/proximity/scene.hpp"

@@ -10,7 +10,7 @@
 
 #include "blum/core/plural.hpp"
 #include "blum/geometry/facing.hpp"
-#include "blum/geometry/surface_components.hpp"
+#include "blum/geometry/triangle_components.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/geometry/winding_number.hpp"
 

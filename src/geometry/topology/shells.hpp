@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
-#include "blum/geometry/surface_components.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/geometry/triangle_components.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum::detail {
