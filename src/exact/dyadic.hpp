@@ -36,12 +36,6 @@ class Dyadic {
 
  private:
   static constexpr int digits = 53;
-  /// Returns integer * 2^power.
-  static Integer times_power(Integer integer, int power) {
-    constexpr int most = 62;
-    for (; power > most; power -= most) integer *= std::int64_t{1} << most;
-    return integer * (std::int64_t{1} << power);
-  }
 
   Dyadic(Integer integer, int exponent) : integer_(std::move(integer)), exponent_(exponent) {}
 

@@ -3,6 +3,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include <cstdint>
 #include <memory>
 
 namespace blum::detail {
@@ -20,5 +21,13 @@ using FixedInteger = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<bits, bits, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked, void>,
     boost::multiprecision::et_off>;
+
+/// Returns value * 2^power. Products take the place of shifts, in which static analysis sees undefined ones.
+/// @param power  >= 0.
+[[nodiscard]] inline Integer times_power(Integer value, int power) {
+  constexpr int most = 62;
+  for (; power > most; power -= most) value *= std::int64_t{1} << most;
+  return value * (std::int64_t{1} << power);
+}
 
 }  // namespace blum::detail

@@ -25,6 +25,7 @@
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "voronoi/assemble.hpp"
+#include "voronoi/planes/plane_complex.hpp"
 #include "voronoi/subdivision.hpp"
 
 namespace blum {
@@ -42,6 +43,9 @@ void check(const VoronoiOptions& options) {
   check_range("depth", options.depth, 1, 24);
   check_range("grids", options.grids, 1, 100);
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
+  if (options.flatness && !(*options.flatness >= 0 && std::isfinite(*options.flatness))) {
+    throw InvalidOption("Voronoi complex: flatness must be 0 or more, not " + exact_text(*options.flatness));
+  }
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
     throw InvalidOption("Voronoi complex: tolerance must be above 0, not " + exact_text(*options.tolerance));
   }
@@ -173,6 +177,26 @@ BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid
   return out;
 }
 
+/// Makes the complex of convex bodies, and its report.
+void finish_planes(const MeshView& mesh, const SiteTable& table, const ConvexBodies& bodies, VoronoiPart part,
+                   PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+  VoronoiReport& report = out.report;
+  out.complex = plane_complex(mesh, table, bodies, part);
+  timer.lap("complex");
+  report.exact = true;
+  report.flatness = bodies.flatness;
+  report.joined = bodies.joined;
+  for (const ConvexBody& body : bodies.bodies) report.faces += body.faces.planes.size();
+  // Positions are rounded once; joined junctions may have moved by the distance within which they were joined.
+  const Box3 box = bounds(mesh);
+  report.hausdorff_bound = bodies.joined + 0x1p-50 * (box.diagonal() + box.largest_coordinate());
+  const auto count = static_cast<std::int64_t>(bodies.bodies.size());
+  report.expected = {count, 0, part == VoronoiPart::all ? static_cast<std::int64_t>(report.faces) : 0};
+  report.found = homology(out.complex.view(), context);
+  report.certified = report.found == report.expected;
+  timer.lap("homology");
+}
+
 /// @param phases  phases that were already completed.
 VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::vector<PhaseTime> phases,
                        const Context& context) {
@@ -184,7 +208,15 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
   const MeshView mesh = solid.surface().mesh;
   const SiteTable table(mesh, context);
   timer.lap("checks");
-  const VoronoiSolid sited(mesh, table, options.part, context);
+  PolyhedronSites sites = polyhedron_sites(mesh, table, context);
+  if (options.method == VoronoiMethod::automatic) {
+    if (const auto bodies = convex_bodies(mesh, table, sites, options.flatness, context)) {
+      timer.lap("planes");
+      finish_planes(mesh, table, *bodies, options.part, timer, out, context);
+      return out;
+    }
+  }
+  const VoronoiSolid sited(mesh, table, std::move(sites), options.part);
   report.faces = sited.sites.face_count;
   report.reflex_edges = sited.sites.reflex_edges.size();
   report.reflex_vertices = sited.sites.reflex_vertices.size();

@@ -26,7 +26,11 @@ class GraphBuilder {
         site_a_(complex.triangle_columns.get<std::int32_t>("site_a")),
         site_b_(complex.triangle_columns.get<std::int32_t>("site_b")),
         incidence_({complex.positions.size(), {}, complex.triangles}, context),
-        context_(context) {}
+        context_(context) {
+    if (complex.vertex_columns.find("junction") != nullptr) {
+      is_junction_ = complex.vertex_columns.get<std::int32_t>("junction");
+    }
+  }
 
   VoronoiGraph build() {
     const bool has_surface = std::any_of(site_a_.begin(), site_a_.end(), [](std::int32_t site) { return site < 0; });
@@ -127,8 +131,9 @@ class GraphBuilder {
       for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
         if (is_on_seam[e] != 0) meeting.push_back(e);
       }
-      if (meeting.size() == 2) joined.join(meeting[0], meeting[1]);
-      is_end_[v] = meeting.empty() || meeting.size() == 2 ? 0 : 1;
+      const bool is_passed = meeting.size() == 2 && !(is_exact() && is_junction_[v] != 0);
+      if (is_passed) joined.join(meeting[0], meeting[1]);
+      is_end_[v] = meeting.empty() || is_passed ? 0 : 1;
     }
     std::vector<std::uint32_t> out(count, none);
     std::vector<std::uint32_t> number(count, none);
@@ -150,7 +155,11 @@ class GraphBuilder {
     return out;
   }
 
-  [[nodiscard]] static bool is_short(const Chain& chain) {
+  /// Returns true if the complex marks its junctions, because it has those of the exact diagram.
+  [[nodiscard]] bool is_exact() const { return !is_junction_.empty(); }
+
+  [[nodiscard]] bool is_short(const Chain& chain) const {
+    if (is_exact()) return false;
     constexpr std::size_t few = 4;  // for example through a square, a cube and another square
     return chain.has_many_sites && chain.edges <= few && chain.ends.size() == 2;
   }
@@ -216,6 +225,7 @@ class GraphBuilder {
 
   const Complex& complex_;
   std::span<const std::int32_t> site_a_, site_b_;
+  std::span<const std::int32_t> is_junction_;  ///< for each vertex: 1 at junctions; empty if the complex has no marks
   const Incidence incidence_;
   const Context& context_;
   std::vector<std::uint32_t> wall_of_;      ///< for each triangle

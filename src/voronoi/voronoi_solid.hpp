@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -37,9 +38,12 @@ class FaceLoops {
 /// this object, which cannot be copied or moved.
 struct VoronoiSolid {
   VoronoiSolid(const MeshView& of, const SiteTable& table_of, VoronoiPart part, const Context& context = {})
+      : VoronoiSolid(of, table_of, polyhedron_sites(of, table_of, context), part) {}
+  /// @param sites_of  those of the mesh.
+  VoronoiSolid(const MeshView& of, const SiteTable& table_of, PolyhedronSites sites_of, VoronoiPart part)
       : mesh(of),
         table(table_of),
-        sites(polyhedron_sites(mesh, table, context)),
+        sites(std::move(sites_of)),
         exact(mesh, table, sites),
         labels(mesh, table, sites, exact),
         loops(mesh, table, sites),

@@ -162,22 +162,32 @@ std::string regions_text(const VoronoiReport& report, VoronoiPart part) {
   return is_each ? " (each is the region of one site)" : "";
 }
 
-std::string certificate_text(VoronoiPart part) {
+std::string certificate_text(VoronoiPart part, bool is_exact) {
+  if (is_exact) return "each wall, seam and junction is that of the exact diagram";
   if (part == VoronoiPart::medial_axis) return "same topology (homology) as the exact medial axis and as the solid";
   return "same topology (homology) as the exact diagram";
 }
 
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, double size, TextTable& table) {
-  table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
+  table.add("certified", report.certified ? "yes: " + certificate_text(part, report.exact) : "NO");
   table.add("topology", subject_of(part) + ": " + betti_text(report.found) + regions_text(report, part) +
                             (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
   table.add("sites", sites_text(report));
-  table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
-                            plural(report.splits, "split", "splits") + ", the smallest cube split " +
-                            std::to_string(report.depth) + " times; " + rounded_text(report.governors) +
-                            " labels in a cube on average");
-  table.detail("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
-                            count_text(report.exact_lines) + " of them decided by exact signs");
+  if (report.flatness > 0) {
+    table.detail("flatness", "corners of triangles lie at most " + share_text(report.flatness, size) +
+                                 " from the planes of their faces");
+  }
+  if (report.joined > 0) {
+    table.detail("joined", "junctions and seams within " + share_text(report.joined, size) + " of each other are one");
+  }
+  if (!report.exact) {
+    table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
+                              plural(report.splits, "split", "splits") + ", the smallest cube split " +
+                              std::to_string(report.depth) + " times; " + rounded_text(report.governors) +
+                              " labels in a cube on average");
+    table.detail("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
+                              count_text(report.exact_lines) + " of them decided by exact signs");
+  }
   table.add("complex", counts.text());
   if (report.certified) {
     table.add("error", "Hausdorff distance from the exact diagram at most " + share_text(report.hausdorff_bound, size));

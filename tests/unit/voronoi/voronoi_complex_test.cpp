@@ -99,7 +99,12 @@ void expect_certified(const VoronoiReport& report) {
 }
 
 TEST_P(Shapes, AreCertified) {
-  expect_certified(voronoi_complex(GetParam().mesh, {.resolution = 1}).report);
+  const VoronoiReport report = voronoi_complex(GetParam().mesh, {.resolution = 1}).report;
+  expect_certified(report);
+  // If the solid is convex, the method of cubes must pass, too.
+  if (report.exact) {
+    expect_certified(voronoi_complex(GetParam().mesh, {.method = VoronoiMethod::cubes, .resolution = 1}).report);
+  }
 }
 
 /// Without the surface, faces have no regions, and their holes have no tunnels.
@@ -205,15 +210,16 @@ TEST(VoronoiComplex, OfShallowDentsOnAFineGrid) {
 /// The box's sides have many triangles, rotated and rounded to 32 bits, as in .stl files. Faces, edges and vertices
 /// bent by 1e-7 meet in lines over the vertices. The border of each square suffices to resolve them.
 TEST(VoronoiComplex, OfManyTrianglesInSinglePrecision) {
-  TriangleMesh mesh = test::turned(dented_box(6, 0, false, 1));
-  for (Vec3d& p : mesh.vertices) {
-    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(static_cast<float>(p[axis]));
-  }
+  const TriangleMesh mesh = test::in_single_precision(test::turned(dented_box(6, 0, false, 1)));
   for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
-    const VoronoiReport report = voronoi_complex(mesh, {.part = part, .resolution = 1}).report;
+    const VoronoiReport report =
+        voronoi_complex(mesh, {.part = part, .method = VoronoiMethod::cubes, .resolution = 1}).report;
     expect_certified(report);
     EXPECT_GT(report.faces, 200U);
     EXPECT_LT(report.cubes, 20000U);
+    const VoronoiReport of_planes = voronoi_complex(mesh, {.part = part}).report;
+    expect_certified(of_planes);
+    EXPECT_EQ(of_planes.faces, 6U) << "the bends are those of rounding";
   }
 }
 
@@ -272,8 +278,9 @@ TEST(VoronoiComplex, CrossesGridLinesOnWalls) {
 /// nearby.
 TEST(VoronoiComplex, IsWithinTheReportedDistanceOfTheWalls) {
   for (const double tolerance : {0.5, 0.1, 0.05}) {
-    const VoronoiComplex walls =
-        voronoi_complex(make_box(), {.part = VoronoiPart::walls, .resolution = 1, .tolerance = tolerance});
+    const VoronoiComplex walls = voronoi_complex(
+        make_box(),
+        {.part = VoronoiPart::walls, .method = VoronoiMethod::cubes, .resolution = 1, .tolerance = tolerance});
     ASSERT_TRUE(walls.report.certified);
     EXPECT_LE(walls.report.hausdorff_bound, tolerance);
     EXPECT_GT(walls.report.hausdorff_bound, 0);
@@ -297,7 +304,7 @@ TEST(VoronoiComplex, IsWithinTheReportedDistanceOfTheWalls) {
     }
   }
   EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = 0.0}), InvalidOption);
-  EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = 1e-9}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.method = VoronoiMethod::cubes, .tolerance = 1e-9}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = std::nan("")}), InvalidOption);
 }
 
@@ -405,7 +412,7 @@ TEST(VoronoiRegions, HoldWhatIsClosest) {
                                {test::turned(make_wedge()), 50}};
   for (const auto& [mesh, wanted] : all) {
     const LabelledSolid solid(mesh);
-    const VoronoiComplex found = voronoi_complex(mesh, {.resolution = 40});
+    const VoronoiComplex found = voronoi_complex(mesh, {.method = VoronoiMethod::cubes, .resolution = 40});
     ASSERT_TRUE(found.report.certified);
     const double off = found.report.hausdorff_bound;
     const WindingNumber inside(mesh);

@@ -1,0 +1,325 @@
+#include "voronoi/planes/convex_faces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "blum/core/sort_unique.hpp"
+#include "voronoi/label_geometry.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+/// Returns the exponent of the last binary digit of a number that is not 0.
+int last_digit(double value) {
+  int exponent = 0;
+  const double part = std::frexp(std::abs(value), &exponent);
+  const auto digits = static_cast<std::uint64_t>(std::ldexp(part, 53));
+  return exponent - 53 + std::countr_zero(digits);
+}
+
+/// Returns value / 2^exponent, which must be an integer.
+Integer in_units(double value, int exponent) {
+  if (value == 0) return 0;
+  const int last = last_digit(value);
+  const Integer digits = static_cast<std::int64_t>(std::ldexp(value, -last));
+  return detail::times_power(digits, last - exponent);
+}
+
+using IntegerPoint = std::array<Integer, 3>;
+
+IntegerPoint minus(const IntegerPoint& a, const IntegerPoint& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Integer dot(const IntegerPoint& a, const IntegerPoint& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+class Finder {
+ public:
+  Finder(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+         std::span<const std::uint32_t> component, double flatness)
+      : mesh_(mesh), table_(table), sites_(sites), component_(component), flatness_(flatness) {
+    for (const std::uint32_t t : component_) {
+      faces_[sites_.face_of[t]].triangles.push_back(t);
+      for (const std::uint32_t v : mesh_.triangles[t]) vertices_.push_back(v);
+    }
+    detail::sort_unique(vertices_);
+    out_.origin = mesh_.vertices[vertices_.front()];
+  }
+
+  std::optional<ConvexFaces> find() {
+    measure();
+    const bool is_joined = flatness_ > 0 && join();
+    if (!is_joined && has_reflex_edge()) return std::nullopt;
+    set_unit();
+    for (const auto& [face, found] : faces_) groups_[found.group].push_back(face);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // (smallest face, group)
+    for (const auto& [group, faces] : groups_) order.push_back({faces.front(), group});
+    std::sort(order.begin(), order.end());
+    for (const auto& [first, group] : order) {
+      if (!add(groups_[group])) return std::nullopt;
+    }
+    if (is_joined && !is_convex()) return std::nullopt;
+    add_neighbours();
+    return std::move(out_);
+  }
+
+ private:
+  struct Face {
+    std::vector<std::uint32_t> triangles;
+    Vec3d normal;  ///< outward unit vector of its largest triangle
+    Vec3d corner;  ///< a corner of that triangle
+    double area = 0;
+    std::vector<std::uint32_t> neighbours;  ///< faces across edges
+    std::uint32_t group = 0;                ///< its face of the largest area
+  };
+
+  [[nodiscard]] Vec3d place(std::uint32_t vertex) const { return mesh_.vertices[vertex] - out_.origin; }
+
+  /// Returns a triangle's unit normal, which is precise for needles, too.
+  [[nodiscard]] Vec3d normal_of(std::uint32_t t) const {
+    const auto [a, b, c] = triangle_corners(mesh_, t);
+    return unit_normal(a, b, c);
+  }
+
+  void measure() {
+    for (auto& [face, found] : faces_) {
+      double largest = 0;
+      for (const std::uint32_t t : found.triangles) {
+        const auto& [a, b, c] = mesh_.triangles[t];
+        const Vec3d area = cross(place(b) - place(a), place(c) - place(a)) * 0.5;
+        const double size = length(area);
+        found.area += size;
+        if (size > largest) {
+          largest = size;
+          found.normal = normal_of(t);
+          found.corner = place(a);
+        }
+        for (const EdgeId edge : table_.triangle_edges()[t]) {
+          for (const std::uint32_t other : sites_.triangles_of[edge.value]) {
+            if (sites_.face_of[other] != face) found.neighbours.push_back(sites_.face_of[other]);
+          }
+        }
+      }
+      detail::sort_unique(found.neighbours);
+      found.group = face;
+    }
+  }
+
+  [[nodiscard]] bool has_reflex_edge() const {
+    return std::any_of(component_.begin(), component_.end(), [&](std::uint32_t t) {
+      const auto& edges = table_.triangle_edges()[t];
+      return std::any_of(edges.begin(), edges.end(),
+                         [&](EdgeId edge) { return sites_.turn[edge.value] == EdgeTurn::reflex; });
+    });
+  }
+
+  /// Joins faces to neighbours that lie in their planes, the largest faces first. Returns true if any were joined.
+  bool join() {
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const auto& [face, found] : faces_) order.push_back({-found.area, face});
+    std::sort(order.begin(), order.end());
+    std::map<std::uint32_t, bool> is_done;
+    bool is_any = false;
+    for (const auto& [area, seed] : order) {
+      if (is_done[seed]) continue;
+      is_done[seed] = true;
+      std::vector<std::uint32_t> stack{seed};
+      while (!stack.empty()) {
+        const std::uint32_t at = stack.back();
+        stack.pop_back();
+        for (const std::uint32_t next : faces_[at].neighbours) {
+          if (is_done[next] || !is_in_plane(faces_[next], faces_[seed])) continue;
+          is_done[next] = true;
+          is_any = true;
+          faces_[next].group = seed;
+          stack.push_back(next);
+        }
+      }
+    }
+    return is_any;
+  }
+
+  [[nodiscard]] bool is_in_plane(const Face& face, const Face& plane) const {
+    constexpr double same_way = 0.9;
+    if (!(blum::dot(face.normal, plane.normal) > same_way)) return false;
+    return std::all_of(face.triangles.begin(), face.triangles.end(), [&](std::uint32_t t) {
+      const Triangle& corners = mesh_.triangles[t];
+      return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+        return std::abs(blum::dot(plane.normal, place(v) - plane.corner)) <= flatness_;
+      });
+    });
+  }
+
+  void set_unit() {
+    exponent_ = 0;
+    bool is_first = true;
+    for (const std::uint32_t v : vertices_) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double value = mesh_.vertices[v][axis];
+        if (value == 0) continue;
+        exponent_ = is_first ? last_digit(value) : std::min(exponent_, last_digit(value));
+        is_first = false;
+      }
+    }
+    out_.unit = std::ldexp(1.0, exponent_);
+    for (std::size_t axis = 0; axis < 3; ++axis) origin_[axis] = in_units(out_.origin[axis], exponent_);
+    out_.reach = 1;
+    for (const std::uint32_t v : vertices_) {
+      for (const Integer& value : point(v)) out_.reach = std::max(out_.reach, Integer(2 * abs(value)));
+    }
+  }
+
+  /// Returns a vertex in units, relative to the origin.
+  [[nodiscard]] IntegerPoint point(std::uint32_t vertex) const {
+    IntegerPoint out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out[axis] = in_units(mesh_.vertices[vertex][axis], exponent_) - origin_[axis];
+    }
+    return out;
+  }
+
+  /// Adds the plane of faces.
+  /// @return false if a corner is too far from a plane that was fitted.
+  bool add(const std::vector<std::uint32_t>& faces) {
+    std::vector<std::uint32_t>& triangles = out_.triangles.emplace_back();
+    for (const std::uint32_t face : faces) {
+      triangles.insert(triangles.end(), faces_[face].triangles.begin(), faces_[face].triangles.end());
+    }
+    std::sort(triangles.begin(), triangles.end());
+    out_.site.push_back(faces.front());
+    if (faces.size() > 1) return add_fitted(triangles);
+    const auto& [a, b, c] = mesh_.triangles[triangles.front()];
+    const IntegerPoint p = point(a);
+    const IntegerPoint u = minus(point(b), p);
+    const IntegerPoint v = minus(point(c), p);
+    // The normal of a triangle points outwards; that of a plane points inwards.
+    IntegerPlane plane{{u[2] * v[1] - u[1] * v[2], u[0] * v[2] - u[2] * v[0], u[1] * v[0] - u[0] * v[1]}, 0};
+    plane.offset = -dot(plane.normal, p);
+    out_.planes.push_back(std::move(plane));
+    return true;
+  }
+
+  bool add_fitted(const std::vector<std::uint32_t>& triangles) {
+    Vec3d normal;
+    Vec3d middle;
+    double weight = 0;
+    for (const std::uint32_t t : triangles) {
+      const auto& [a, b, c] = mesh_.triangles[t];
+      const double area = length(cross(place(b) - place(a), place(c) - place(a)));
+      normal -= normal_of(t) * area;
+      middle += (place(a) + place(b) + place(c)) * (area / 3);
+      weight += area;
+    }
+    normal = normal / length(normal);
+    middle = middle / weight;
+    constexpr double digits = 0x1p60;
+    IntegerPlane plane;
+    IntegerPoint at;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      plane.normal[axis] = static_cast<std::int64_t>(std::nearbyint(normal[axis] * digits));
+      const double in_unit = middle[axis] / out_.unit;
+      at[axis] = in_unit == 0 ? Integer(0) : rounded(in_unit);
+    }
+    plane.offset = -dot(plane.normal, at);
+    out_.planes.push_back(std::move(plane));
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        out_.flatness = std::max(out_.flatness, std::abs(blum::dot(normal, place(v) - middle)));
+      }
+    }
+    return out_.flatness <= 2 * flatness_;
+  }
+
+  void add_neighbours() {
+    std::map<std::uint32_t, std::uint32_t> plane_of;
+    for (std::uint32_t plane = 0; plane < out_.triangles.size(); ++plane) {
+      for (const std::uint32_t t : out_.triangles[plane]) plane_of[sites_.face_of[t]] = plane;
+    }
+    out_.neighbours.resize(out_.planes.size());
+    for (const auto& [face, found] : faces_) {
+      std::vector<std::uint32_t>& list = out_.neighbours[plane_of[face]];
+      for (const std::uint32_t other : found.neighbours) list.push_back(plane_of[other]);
+    }
+    for (std::uint32_t plane = 0; plane < out_.neighbours.size(); ++plane) {
+      std::vector<std::uint32_t>& list = out_.neighbours[plane];
+      detail::sort_unique(list);
+      std::erase(list, plane);
+      Vec3d sum;
+      double weight = 0;
+      for (const std::uint32_t t : out_.triangles[plane]) {
+        const auto& [a, b, c] = mesh_.triangles[t];
+        const double area = length(cross(place(b) - place(a), place(c) - place(a)));
+        sum += (place(a) + place(b) + place(c)) * (area / 3);
+        weight += area;
+      }
+      out_.middle.push_back(sum / weight);
+    }
+  }
+
+  static Integer rounded(double value) {
+    const double whole = std::nearbyint(value);
+    return whole == 0 ? Integer(0) : in_units(whole, 0);
+  }
+
+  /// Returns true if no corner lies clearly outside a plane.
+  [[nodiscard]] bool is_convex() const {
+    for (const IntegerPlane& plane : out_.planes) {
+      Vec3d normal;
+      for (std::size_t axis = 0; axis < 3; ++axis) normal[axis] = plane.normal[axis].convert_to<double>();
+      const double size = length(normal);
+      normal = normal / size;
+      const double offset = plane.offset.convert_to<double>() / size * out_.unit;
+      for (const std::uint32_t v : vertices_) {
+        if (blum::dot(normal, place(v)) + offset < -2 * flatness_) return false;
+      }
+    }
+    return true;
+  }
+
+  const MeshView& mesh_;
+  const SiteTable& table_;
+  const PolyhedronSites& sites_;
+  const std::span<const std::uint32_t> component_;
+  const double flatness_;
+  std::vector<std::uint32_t> vertices_;
+  std::map<std::uint32_t, Face> faces_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups_;
+  int exponent_ = 0;
+  IntegerPoint origin_;
+  ConvexFaces out_;
+};
+
+}  // namespace
+
+double rounding_of_coordinates(const MeshView& mesh) {
+  int digits = 0;
+  double largest = 0;
+  for (const Vec3d& p : mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (p[axis] == 0) continue;
+      int exponent = 0;
+      std::ignore = std::frexp(p[axis], &exponent);
+      digits = std::max(digits, exponent - last_digit(p[axis]));
+      largest = std::max(largest, std::abs(p[axis]));
+    }
+  }
+  constexpr int exact = 20;
+  constexpr int single = 24;
+  if (digits <= exact) return 0;
+  return 8 * largest * (digits <= single ? 0x1p-24 : 0x1p-53);
+}
+
+std::optional<ConvexFaces> convex_faces(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                                        std::span<const std::uint32_t> component, double flatness) {
+  return Finder(mesh, table, sites, component, flatness).find();
+}
+
+}  // namespace blum::voronoi

@@ -1,0 +1,47 @@
+// Blum: the planes of a convex polyhedron. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/planes/half_spaces.hpp"
+
+namespace blum::voronoi {
+
+/// The planes of a convex polyhedron, in integers.
+struct ConvexFaces {
+  std::vector<IntegerPlane> planes;  ///< facing inwards, in units of `unit`, relative to `origin`
+  std::vector<std::uint32_t> site;   ///< for each plane: its smallest face in PolyhedronSites; ascending
+  std::vector<std::vector<std::uint32_t>> triangles;   ///< for each plane: its triangles, ascending
+  std::vector<std::vector<std::uint32_t>> neighbours;  ///< for each plane: the planes across its edges, ascending
+  std::vector<Vec3d> middle;  ///< for each plane: a point in its polygon, mesh units, relative to `origin`
+  double flatness = 0;        ///< largest distance of a corner of a plane's triangles from the plane, mesh units
+  Vec3d origin;
+  double unit = 1;  ///< a power of two: all coordinates minus those of the origin are multiples of it
+  Integer reach;    ///< bound on the coordinates of the polyhedron, in units
+};
+
+/// Returns the distance that rounding of a mesh's coordinates explains, mesh units. It is 8 times the rounding error of
+/// the largest coordinate. The error is that of the precision whose digits the longest coordinate fills. With 21 to 24
+/// binary digits it is single precision, with more digits double precision. Shorter coordinates count as not rounded,
+/// and the result is 0.
+[[nodiscard]] double rounding_of_coordinates(const MeshView& mesh);
+
+/// Returns the planes of one component of a mesh, or nothing if it is not a convex polyhedron.
+///
+/// Faces that share an edge become one plane if they face the same way. Their corners must lie within `flatness` of the
+/// plane of the largest one. If faces were joined, their plane is fitted to their corners; corners of the component
+/// may then lie up to twice `flatness` outside planes. Otherwise, everything is exact.
+/// @param component  triangles of the component, ascending.
+/// @param flatness   >= 0, mesh units.
+[[nodiscard]] std::optional<ConvexFaces> convex_faces(const MeshView& mesh, const SiteTable& table,
+                                                      const PolyhedronSites& sites,
+                                                      std::span<const std::uint32_t> component, double flatness);
+
+}  // namespace blum::voronoi

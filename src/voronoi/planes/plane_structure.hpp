@@ -1,0 +1,42 @@
+// Blum: sheets, seams and junctions between the regions of planes. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "voronoi/planes/convex_faces.hpp"
+#include "voronoi/planes/half_spaces.hpp"
+
+namespace blum::voronoi {
+
+/// A convex polygon between the regions of two planes, or on one plane.
+struct PlaneSheet {
+  HalfSpaces::Index first = 0;
+  HalfSpaces::Index second = 0;          ///< larger than `first`; the floor for polygons on the plane `first`
+  std::vector<std::uint32_t> junctions;  ///< a loop, counterclockwise as seen from the region of `second`
+};
+
+/// The diagram inside a convex polyhedron. Coordinates are relative to the origin of the planes.
+struct PlaneStructure {
+  struct Junction {
+    Vec3d at;
+    double height = 0;                      ///< distance from its planes
+    std::vector<HalfSpaces::Index> planes;  ///< ascending; the last one is the floor on the surface
+  };
+  std::vector<Junction> junctions;
+  std::vector<PlaneSheet> sheets;   ///< ascending by their planes
+  std::vector<PlaneSheet> surface;  ///< one polygon on each plane
+};
+
+/// Returns the diagram of planes, or nothing if they are not the faces of a bounded convex polyhedron, each with a
+/// polygon of its own. The structure is exact; coordinates are rounded once.
+///
+/// A sheet consists of all vertices that touch two planes, if these are more than two. Two of its vertices share a seam
+/// if they are the only ones that also touch a third plane.
+/// @throws Cancelled.
+[[nodiscard]] std::optional<PlaneStructure> plane_structure(const ConvexFaces& faces, const Context& context);
+
+}  // namespace blum::voronoi
