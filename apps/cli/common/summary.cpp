@@ -173,7 +173,7 @@ std::string point_text(const Vec3d& point, double size) {
 std::string share_text(double length, double size, std::string_view unit) {
   constexpr double least_share = 0.001;
   const double share = length / size;
-  const std::string text = rounded_text(length) + std::string(unit);
+  std::string text = rounded_text(length) + std::string(unit);
   if (!(share >= least_share && std::isfinite(share))) return text;
   const double percent = 100 * share;
   const double shown = percent < 10 ? std::round(percent * 10) / 10 : std::round(percent);

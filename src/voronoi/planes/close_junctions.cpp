@@ -130,7 +130,7 @@ class Joiner {
       if (k == edge.first || k == edge.second) continue;
       const Vec3d step = structure_.junctions[k].at - from;
       const double at = dot(step, along) / size;
-      if (at > 0 && at < 1 && squared_length(step - along * at) <= tolerance_ * tolerance_) found.push_back({at, k});
+      if (at > 0 && at < 1 && squared_length(step - along * at) <= tolerance_ * tolerance_) found.emplace_back(at, k);
     }
     std::sort(found.begin(), found.end());
     Loop out;
@@ -172,7 +172,7 @@ class Joiner {
       for (const PlaneSheet& sheet : *list) {
         each_edge(sheet.junctions, [&](std::uint32_t a, std::uint32_t b) {
           const Edge edge = sorted(a, b);
-          sheets[edge].push_back({sheet.first, sheet.second});
+          sheets[edge].emplace_back(sheet.first, sheet.second);
           at[a].insert(edge);
           at[b].insert(edge);
         });

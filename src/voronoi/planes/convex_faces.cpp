@@ -61,7 +61,7 @@ class Finder {
     set_unit();
     for (const auto& [face, found] : faces_) groups_[found.group].push_back(face);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // (smallest face, group)
-    for (const auto& [group, faces] : groups_) order.push_back({faces.front(), group});
+    for (const auto& [group, faces] : groups_) order.emplace_back(faces.front(), group);
     std::sort(order.begin(), order.end());
     for (const auto& [first, group] : order) {
       if (!add(groups_[group])) return std::nullopt;
@@ -124,7 +124,7 @@ class Finder {
   /// Joins faces to neighbours that lie in their planes, the largest faces first. Returns true if any were joined.
   bool join() {
     std::vector<std::pair<double, std::uint32_t>> order;
-    for (const auto& [face, found] : faces_) order.push_back({-found.area, face});
+    for (const auto& [face, found] : faces_) order.emplace_back(-found.area, face);
     std::sort(order.begin(), order.end());
     std::map<std::uint32_t, bool> is_done;
     bool is_any = false;

@@ -19,9 +19,9 @@ double ratio(const Integer& numerator, const Integer& denominator) {
   Integer bottom = abs(denominator);
   const int shift = 66 - static_cast<int>(msb(top)) + static_cast<int>(msb(bottom));
   if (shift >= 0) {
-    top <<= static_cast<unsigned>(shift);
+    top = detail::times_power(std::move(top), shift);
   } else {
-    bottom <<= static_cast<unsigned>(-shift);
+    bottom = detail::times_power(std::move(bottom), -shift);
   }
   const Integer quotient = top / bottom;
   const double magnitude = std::ldexp(quotient.convert_to<double>(), -shift);
@@ -111,12 +111,12 @@ void HalfSpaces::add(IntegerPlane plane, int weight) {
   Integer square = x * x + y * y + z * z;
   if (weight < 0) square = 1;
   // The normal times the magnitude of the weight is a unit vector. Ratios of integers keep it precise.
-  constexpr unsigned bits = Root::stored_bits[0];
+  constexpr int bits = Root::stored_bits[0];
   Root root(std::move(square));
   const Integer length = root.times_power(bits);
   Row row;
-  for (std::size_t k = 0; k < 3; ++k) row.normal[k] = ratio(Integer(plane.normal[k] << bits), length);
-  row.offset = ratio(Integer(plane.offset << bits), length) * unit_;
+  for (std::size_t k = 0; k < 3; ++k) row.normal[k] = ratio(detail::times_power(plane.normal[k], bits), length);
+  row.offset = ratio(detail::times_power(plane.offset, bits), length) * unit_;
   row.weight = weight;
   rows_.push_back(row);
   exact_.push_back({std::move(plane), weight, std::move(root)});
@@ -171,14 +171,14 @@ PlacedCorner HalfSpaces::place(const Base& base) const {
 }
 
 PlacedCorner HalfSpaces::place_exactly(const Base& base) const {
-  constexpr unsigned bits = Root::stored_bits[1];
+  constexpr int bits = Root::stored_bits[1];
   // The columns are normal, weight and offset of each row, times 2^bits.
   std::array<std::array<Integer, 5>, 4> rows;
   for (std::size_t k = 0; k < 4; ++k) {
     const ExactRow& row = exact_[base[k]];
-    for (std::size_t c = 0; c < 3; ++c) rows[k][c] = row.plane.normal[c] << bits;
+    for (std::size_t c = 0; c < 3; ++c) rows[k][c] = detail::times_power(row.plane.normal[c], bits);
     rows[k][3] = -row.weight * row.root.times_power(bits);
-    rows[k][4] = -row.plane.offset << bits;
+    rows[k][4] = -detail::times_power(row.plane.offset, bits);
   }
   const auto det = [&](std::size_t replaced) {
     std::array<std::array<Integer, 3>, 4> first;

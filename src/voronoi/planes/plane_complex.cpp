@@ -59,20 +59,6 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
 }
 
-Vec3d unit_normal_of(const IntegerPlane& plane) {
-  // The largest number is scaled to about 1, so that squares stay in range.
-  Integer largest = 0;
-  for (const Integer& value : plane.normal) largest = std::max(largest, Integer(abs(value)));
-  const auto bits = static_cast<int>(msb(largest));
-  Vec3d out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Integer& value = plane.normal[axis];
-    const Integer scaled = bits > 100 ? Integer(value >> static_cast<unsigned>(bits - 100)) : value;
-    out[axis] = std::ldexp(scaled.convert_to<double>(), -std::min(bits, 100));
-  }
-  return out / length(out);
-}
-
 /// Returns V - E + F of the sheets and the surface.
 std::int64_t euler_number(const PlaneStructure& structure) {
   std::vector<std::array<std::uint32_t, 2>> edges;
@@ -122,8 +108,6 @@ class Assembly {
 
   void add(const ConvexBody& body) {
     body_ = &body;
-    normals_.clear();
-    for (const IntegerPlane& plane : body.faces.planes) normals_.push_back(unit_normal_of(plane));
     const auto first = static_cast<std::uint32_t>(vertices_.size());
     for (const PlaneStructure::Junction& junction : body.structure.junctions) {
       vertices_.push_back(placed(junction.at, junction.height, junction.planes, true));
@@ -131,7 +115,7 @@ class Assembly {
     for (const PlaneSheet& sheet : body.structure.sheets) {
       const std::array between{static_cast<std::int32_t>(body.faces.site[sheet.first]),
                                static_cast<std::int32_t>(body.faces.site[sheet.second])};
-      const double angle = angle_between(normals_[sheet.first], normals_[sheet.second]);
+      const double angle = angle_between(normal(sheet.first), normal(sheet.second));
       add_polygon(sheet, {sheet.first, sheet.second}, first, between, angle);
     }
     if (part_ != VoronoiPart::all) return;
@@ -163,6 +147,8 @@ class Assembly {
     bool is_junction = false;
   };
 
+  [[nodiscard]] const Vec3d& normal(HalfSpaces::Index plane) const { return body_->structure.normals[plane]; }
+
   /// @param at  relative to the origin of the body.
   [[nodiscard]] Vertex placed(const Vec3d& at, double height, const std::vector<HalfSpaces::Index>& planes,
                               bool is_junction) const {
@@ -173,16 +159,16 @@ class Assembly {
       double least = 2;
       for (std::size_t a = 0; a < planes.size(); ++a) {
         for (std::size_t b = a + 1; b < planes.size(); ++b) {
-          const double cosine = dot(normals_[planes[a]], normals_[planes[b]]);
+          const double cosine = dot(normal(planes[a]), normal(planes[b]));
           if (cosine >= least) continue;
           least = cosine;
           widest = {planes[a], planes[b]};
         }
       }
-      if (planes.size() > 1) out.angle = angle_between(normals_[widest[0]], normals_[widest[1]]);
+      if (planes.size() > 1) out.angle = angle_between(normal(widest[0]), normal(widest[1]));
     }
     for (const std::size_t which : {0U, 1U}) {
-      out.footprints[which] = out.at - normals_[widest[which]] * height;
+      out.footprints[which] = out.at - normal(widest[which]) * height;
       out.sites[which] = site_at(widest[which], out.footprints[which]);
     }
     return out;
@@ -282,7 +268,6 @@ class Assembly {
   const SiteTable& table_;
   const VoronoiPart part_;
   const ConvexBody* body_ = nullptr;
-  std::vector<Vec3d> normals_;  ///< of the body's planes, inwards
   std::vector<Vertex> vertices_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::int32_t> site_a_, site_b_;

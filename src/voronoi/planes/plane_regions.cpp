@@ -54,7 +54,8 @@ class Region {
     for (Index k = 0; k < height.size(); ++k) {
       if (k != plane_) out.push_back(k);
     }
-    std::stable_sort(out.begin(), out.end(), [&](Index a, Index b) { return height[a] < height[b]; });
+    std::sort(out.begin(), out.end(),
+              [&](Index a, Index b) { return std::pair(height[a], a) < std::pair(height[b], b); });
     return out;
   }
 

@@ -107,6 +107,7 @@ std::optional<PlaneStructure> plane_structure(const ConvexFaces& faces, const Co
   const std::vector<PlaneCorner> corners = plane_corners(spaces, faces, is_bounded, context);
   if (!is_bounded) return std::nullopt;
   PlaneStructure out;
+  for (Index plane = 0; plane < spaces.plane_count(); ++plane) out.normals.push_back(spaces.normal(plane));
   out.junctions.resize(corners.size());
   parallel_for(context, corners.size(), corners_per_range, "junctions", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {

@@ -26,6 +26,7 @@ struct PlaneStructure {
     double height = 0;                      ///< distance from its planes
     std::vector<HalfSpaces::Index> planes;  ///< ascending; the last one is the floor on the surface
   };
+  std::vector<Vec3d> normals;  ///< of the planes: unit vectors that point inwards
   std::vector<Junction> junctions;
   std::vector<PlaneSheet> sheets;   ///< ascending by their planes
   std::vector<PlaneSheet> surface;  ///< one polygon on each plane

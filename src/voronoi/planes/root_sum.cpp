@@ -15,7 +15,7 @@ int sign_of(const Integer& value) {
 }
 
 /// Returns the sign of the sum if rounded roots decide it.
-std::optional<int> sign_with_bits(std::span<const RootTerm> terms, unsigned bits) {
+std::optional<int> sign_with_bits(std::span<const RootTerm> terms, int bits) {
   Integer sum = 0;
   Integer error = 0;
   for (const RootTerm& term : terms) {
@@ -58,22 +58,23 @@ bool is_zero(std::span<const RootTerm> terms) {
 }  // namespace
 
 Root::Root(detail::Integer square) : square_(std::move(square)) {
-  for (std::size_t k = 0; k < stored_bits.size(); ++k) stored_[k] = sqrt(Integer(square_ << (2 * stored_bits[k])));
+  for (std::size_t k = 0; k < stored_bits.size(); ++k)
+    stored_[k] = sqrt(detail::times_power(square_, 2 * stored_bits[k]));
 }
 
-detail::Integer Root::times_power(unsigned bits) const {
+detail::Integer Root::times_power(int bits) const {
   for (std::size_t k = 0; k < stored_bits.size(); ++k) {
     if (stored_bits[k] == bits) return stored_[k];
   }
-  return sqrt(Integer(square_ << (2 * bits)));
+  return sqrt(detail::times_power(square_, 2 * bits));
 }
 
 int sign_of_root_sum(std::span<const RootTerm> terms) {
-  for (const unsigned bits : Root::stored_bits) {
+  for (const int bits : Root::stored_bits) {
     if (const std::optional<int> sign = sign_with_bits(terms, bits)) return *sign;
   }
   if (is_zero(terms)) return 0;
-  for (unsigned bits = 4 * Root::stored_bits.back();; bits *= 2) {
+  for (int bits = 4 * Root::stored_bits.back();; bits *= 2) {
     if (const std::optional<int> sign = sign_with_bits(terms, bits)) return *sign;
   }
 }

@@ -16,9 +16,9 @@ class Root {
 
   [[nodiscard]] const detail::Integer& square() const { return square_; }
   /// Returns the largest integer whose value is at most 2^bits times the root.
-  [[nodiscard]] detail::Integer times_power(unsigned bits) const;
+  [[nodiscard]] detail::Integer times_power(int bits) const;
 
-  static constexpr std::array<unsigned, 2> stored_bits{64, 256};
+  static constexpr std::array<int, 2> stored_bits{64, 256};
 
  private:
   detail::Integer square_ = 0;
