@@ -100,6 +100,11 @@ def variants(shape, way="fan"):
     """The triangulated shape as made, turned by four rotations, as float32, moved by 1e6, and scaled by 1e-6."""
     solid = triangulate(shape, way)
     stays = shape.kind == "generic" and all(len(p) == 3 for p in shape.polygons) and solid.tolerance == 0
+    return moved(solid, stays)
+
+
+def moved(solid, stays=False):
+    """The solid and its seven variants. With `stays`, their tolerances stay zero: their own coordinates are meant."""
 
     def changed(what, vertices, error, factor=1.0):
         tolerance = 0.0 if stays else solid.tolerance * factor + error

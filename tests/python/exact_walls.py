@@ -28,7 +28,7 @@ class Sites(NamedTuple):
     areas: np.ndarray  # [faces].
     edges: list  # For each reflex line: faces (f, g), and its segments as pairs of vertex ids.
     reflex: list  # Ids of the vertices that can be nearest.
-    directions: dict  # For each of these: unit vectors [n, 3] along its mesh edges, and its outward normal.
+    cones: dict  # For each of these: unit rays [n, 3] around the directions of the points nearest to it.
     around: dict  # For each of these: ids of its faces.
 
 
@@ -54,7 +54,7 @@ def sites_of(vertices, triangles):
     units = vectors / areas[:, None]
     pairs = neighbours(triangles)
     parent = np.arange(len(triangles))
-    for s, t in pairs * 2:  # Union by the lowest id of the sets.
+    for s, t in pairs:  # The lowest id of a set names it.
         if np.linalg.norm(np.cross(units[s], units[t])) < FLAT and units[s] @ units[t] > 0:
             parent[parent == max(parent[s], parent[t])] = min(parent[s], parent[t])
     face_of = np.unique(parent, return_inverse=True)[1]
@@ -70,13 +70,13 @@ def sites_of(vertices, triangles):
         if f != g and units[s] @ (vertices[beyond] - vertices[ends[0]]) > 0:
             lines.setdefault((int(f), int(g)), []).append(tuple(ends.tolist()))
     held = sorted({v for own in lines.values() for segment in own for v in segment})
-    directions = {v: _star(vertices, triangles, units, v) for v in held}
     around = {v: sorted(set(face_of[(triangles == v).any(axis=1)].tolist())) for v in held}
-    reflex = [v for v in held if len(around[v]) > 2 and _open(*directions[v])]
+    cones = {v: _cone(*_star(vertices, triangles, units, v)) for v in held if len(around[v]) > 2}
+    reflex = [v for v, cone in cones.items() if len(cone)]
     names = [("face", f) for f in range(len(normals))] + [("edge", *pair) for pair in sorted(lines)]
     names += [("vertex", v) for v in reflex]
     sizes = np.bincount(face_of, areas)
-    return Sites(names, face_of, normals, offsets, sizes, sorted(lines.items()), reflex, directions, around)
+    return Sites(names, face_of, normals, offsets, sizes, sorted(lines.items()), reflex, cones, around)
 
 
 def _star(vertices, triangles, units, v):
@@ -91,50 +91,65 @@ def _star(vertices, triangles, units, v):
     return along / np.linalg.norm(along, axis=1)[:, None], normal
 
 
-def _nearest_to_vertex(along, normal, m):
-    """If a short step m from a vertex leads to points inside that are nearest to the vertex."""
-    return (m @ along.T < -1e-9).all(axis=1) & (m @ normal < 0)
+def _cone(along, normal):
+    """The cone of the points near a vertex that are nearest to it: unit rays [n, 3] in order, or none if it is flat.
 
-
-def _open(along, normal):
-    """If a vertex is nearest to an open set inside. Sets seen under less than about 0.002 steradians are missed."""
-    m = np.random.default_rng(0).normal(size=(40000, 3))
-    return bool(_nearest_to_vertex(along, normal, m / np.linalg.norm(m, axis=1)[:, None]).any())
+    Its points m have no positive component along any edge of the mesh. `normal` points outward.
+    """
+    i, j = np.triu_indices(len(along), 1)
+    across = np.cross(along[i], along[j])
+    lengths = np.linalg.norm(across, axis=1)
+    across = across[lengths > 1e-9] / lengths[lengths > 1e-9, None]
+    rays = np.vstack([across, -across])
+    rays = rays[(rays @ along.T < 1e-9).all(axis=1)]
+    rays = rays[np.unique(rays.round(8), axis=0, return_index=True)[1]]
+    middle = rays.sum(axis=0)
+    if len(rays) < 3 or middle @ normal >= 0 or np.linalg.svd(rays)[1][2] < 1e-6:
+        return rays[:0]
+    u = np.cross(middle, rays[0])
+    return rays[np.argsort(np.arctan2(rays @ u, rays @ np.cross(u, middle)))]
 
 
 def maximal_balls(vertices, triangles, count, seed=1):
-    """About `count` maximal balls at random contacts, and the sites. A million balls of 30 faces take some 10 s."""
+    """About `count` maximal balls at random contacts, and the sites. A million balls of 30 sites take some 3 s."""
     vertices, triangles = np.asarray(vertices, dtype=float), np.asarray(triangles, dtype=np.int64)
     sites, rng = sites_of(vertices, triangles), np.random.default_rng(seed)
     shares = np.full(len(sites.names), 0.3 / len(sites.names))
     shares[: len(sites.areas)] += 0.7 * sites.areas / sites.areas.sum()
-    parts = [_from_site(vertices, triangles, sites, k, max(100, int(n)), rng) for k, n in enumerate(shares * count)]
-    joined = [np.concatenate(column) for column in zip(*(part[:-1] for part in parts), strict=True)]
-    return Balls(*joined, np.array([part[-1] for part in parts])), sites
+    tries = np.maximum(100, (shares * count).astype(int))
+    contacts = [_contacts(vertices, triangles, sites, k, n, rng) for k, n in enumerate(tries)]
+    own = np.repeat(np.arange(len(contacts)), [len(p) for p, _, _ in contacts])
+    p, m = (np.concatenate([part[k] for part in contacts]) for k in (0, 1))
+    measure = np.concatenate([np.broadcast_to(part[2], len(part[0])) for part in contacts]) / tries[own]
+    hidden, blocks = _hidden(sites), range(0, len(p), 50_000)
+    grown = [_grow(vertices, triangles, sites, hidden, *(x[k : k + 50_000] for x in (p, m, own))) for k in blocks]
+    radii, second, gaps, other = (np.concatenate(column) for column in zip(*grown, strict=True))
+    centres = p + radii[:, None] * m
+    slope = np.linalg.norm(m - (centres - other) / radii[:, None], axis=1) / 2  # Cosine of m and the wall's normal.
+    power = np.array([("face", "edge", "vertex").index(name[0]) for name in sites.names])[own]
+    weights, volumes = measure * radii**power / slope, measure * radii ** (power + 1) / (power + 1)
+    return Balls(centres, radii, own, second, gaps, weights, volumes, tries), sites
 
 
-def _from_site(vertices, triangles, sites, k, count, rng):
-    """Balls whose first contact is site k."""
+def _contacts(vertices, triangles, sites, k, count, rng):
+    """Random places of site k, unit vectors from there to the centres, and the measure of the set of all of these."""
     name = sites.names[k]
     if name[0] == "face":
-        p, m = _on_face(vertices, triangles, sites, name[1], count, rng)
-        measure, power, hidden = sites.areas[name[1]], 0, {name[1]}
-    elif name[0] == "edge":
-        p, m, measure = _on_edge(vertices, sites, k - len(sites.areas), count, rng)
-        power, hidden = 1, {name[1], name[2]}
-    else:
-        m = rng.normal(size=(count, 3))
-        m /= np.linalg.norm(m, axis=1)[:, None]
-        m = m[_nearest_to_vertex(*sites.directions[name[1]], m)]
-        p = np.tile(vertices[name[1]], (len(m), 1))
-        measure, power, hidden = 4 * np.pi, 2, set(sites.around[name[1]])
-    radii, second, gaps, other = _grow(vertices, triangles, sites, p, m, k, hidden)
-    centres = p + radii[:, None] * m
-    away = (centres - other) / radii[:, None]
-    slope = np.linalg.norm(m - away, axis=1) / 2  # The cosine between the normal of the wall and m.
-    weights = measure / count * radii**power / slope
-    volumes = measure / count * radii ** (power + 1) / (power + 1)
-    return centres, radii, np.full(len(p), k), second, gaps, weights, volumes, count
+        return *_on_face(vertices, triangles, sites, name[1], count, rng), sites.areas[name[1]]
+    if name[0] == "edge":
+        return _on_edge(vertices, sites, k - len(sites.areas), count, rng)
+    return _at_vertex(vertices[name[1]], sites.cones[name[1]], count, rng)
+
+
+def _hidden(sites):
+    """If balls at site i cannot be stopped by site j [i, j]: its own planes and lines, which they touch at once."""
+    faces, lines = len(sites.areas), [pair for pair, _ in sites.edges]
+    around = [{f} for f in range(faces)] + [set(pair) for pair in lines] + [set(sites.around[v]) for v in sites.reflex]
+    hidden = np.eye(len(sites.names), dtype=bool)
+    for i, own in enumerate(around):
+        hidden[i, sorted(own)] = True
+        hidden[i, [faces + e for e, pair in enumerate(lines) if own.issuperset(pair)]] = True
+    return hidden
 
 
 def _on_face(vertices, triangles, sites, f, count, rng):
@@ -142,9 +157,26 @@ def _on_face(vertices, triangles, sites, f, count, rng):
     a, b, c = (vertices[own[:, k]] for k in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     t = rng.choice(len(own), size=count, p=areas / areas.sum())
-    u, v = rng.uniform(size=(2, count, 1))
+    return _in_triangles(a, b, c, t, rng), np.tile(-sites.normals[f], (count, 1))
+
+
+def _at_vertex(corner, rays, count, rng):
+    """Directions in a cone, from flat triangles between its rays. Their weights make them even on the sphere."""
+    a, b, c = np.tile(rays[0], (len(rays) - 2, 1)), rays[1:-1], rays[2:]
+    vectors = np.cross(b - a, c - a) / 2
+    areas = np.linalg.norm(vectors, axis=1)
+    t = rng.choice(len(areas), size=count, p=areas / areas.sum())
+    q = _in_triangles(a, b, c, t, rng)
+    lengths = np.linalg.norm(q, axis=1)
+    solid_angles = areas.sum() * np.abs(np.einsum("ij,ij->i", q, vectors[t] / areas[t, None])) / lengths**3
+    return np.tile(corner, (count, 1)), q / lengths[:, None], solid_angles
+
+
+def _in_triangles(a, b, c, t, rng):
+    """Random points, even in the triangles t."""
+    u, v = rng.uniform(size=(2, len(t), 1))
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    return a[t] + u * (b - a)[t] + v * (c - a)[t], np.tile(-sites.normals[f], (count, 1))
+    return a[t] + u * (b - a)[t] + v * (c - a)[t]
 
 
 def _on_edge(vertices, sites, e, count, rng):
@@ -168,35 +200,30 @@ class _First:
         self.radii, self.next = np.full(count, np.inf), np.full(count, np.inf)
         self.site, self.contact = np.full(count, -1), np.zeros((count, 3))
 
-    def add(self, site, radii, contact):
-        """Offers radii (infinite where the site is not touched) with contacts [n, 3]."""
-        other = self.site != site
-        self.next = np.minimum(self.next, np.where(other, np.maximum(radii, self.radii), np.inf))
-        better = radii < self.radii
-        self.radii = np.where(better, radii, self.radii)
-        self.site[better], self.contact[better] = site, contact[better]
+    def add(self, site, rows, radii, contacts):
+        """Offers radii with their contacts [n, 3] for some of the balls."""
+        old, other = self.radii[rows], self.site[rows] != site
+        self.next[rows] = np.minimum(self.next[rows], np.where(other, np.maximum(radii, old), np.inf))
+        better = radii < old
+        rows = rows[better]
+        self.radii[rows], self.site[rows], self.contact[rows] = radii[better], site, contacts[better]
 
 
-def _grow(vertices, triangles, sites, p, m, own, hidden):
+def _grow(vertices, triangles, sites, hidden, p, m, own):
     """Radii of the largest balls with centres p + r m, the sites that stop them, gaps, and contacts."""
     first, faces = _First(len(p)), len(sites.areas)
     near = NEAR * np.ptp(vertices, axis=0).max()
     for f in range(faces):
-        if f in hidden:
-            continue
         slack, slope = sites.offsets[f] - p @ sites.normals[f], 1 + m @ sites.normals[f]
         with np.errstate(all="ignore"):
-            radii = np.where((slack > near) & (slope > 0), slack / slope, np.inf)
+            radii = np.where((slack > near) & (slope > 0) & ~hidden[own, f], slack / slope, np.inf)
         tried = np.flatnonzero(radii < first.next)
         foot = p[tried] + radii[tried, None] * (m[tried] + sites.normals[f])
         inside = np.zeros(len(tried), dtype=bool)
         for t in triangles[sites.face_of == f]:
             inside |= _in_triangle(foot, vertices[t], sites.normals[f])
-        _offer(first, f, tried[inside], radii[tried[inside]], foot[inside])
-    for e, ((f, g), segments) in enumerate(sites.edges):
-        k = faces + e
-        if k == own or {f, g} <= hidden:
-            continue
+        first.add(f, tried[inside], radii[tried[inside]], foot[inside])
+    for e, (_, segments) in enumerate(sites.edges):
         for segment in segments:
             a, b = vertices[list(segment)]
             along = (b - a) / np.linalg.norm(b - a)
@@ -205,27 +232,18 @@ def _grow(vertices, triangles, sites, p, m, own, hidden):
             square, half = np.einsum("ij,ij->i", w, w), np.einsum("ij,ij->i", w, m)
             with np.errstate(all="ignore"):
                 below = half + np.sqrt(half**2 + slope**2 * square)
-                radii = np.where(below > 1e-12 * np.sqrt(square), square / below, np.inf)
+                radii = np.where((below > 1e-12 * np.sqrt(square)) & ~hidden[own, faces + e], square / below, np.inf)
                 place = (p - a) @ along + radii * slope
             tried = np.flatnonzero((radii < first.next) & (place >= 0) & (place <= np.linalg.norm(b - a)))
-            _offer(first, k, tried, radii[tried], a + np.outer(place[tried], along))
-    for i, v in enumerate(sites.reflex):
-        k = faces + len(sites.edges) + i
-        if k == own:
-            continue
+            first.add(faces + e, tried, radii[tried], a + np.outer(place[tried], along))
+    for k, v in enumerate(sites.reflex, faces + len(sites.edges)):
         w = vertices[v] - p
         square, half = np.einsum("ij,ij->i", w, w), np.einsum("ij,ij->i", w, m)
         with np.errstate(all="ignore"):
-            radii = np.where(half > 1e-12 * np.sqrt(square), square / (2 * half), np.inf)
+            radii = np.where((half > 1e-12 * np.sqrt(square)) & ~hidden[own, k], square / (2 * half), np.inf)
         tried = np.flatnonzero(radii < first.next)
-        _offer(first, k, tried, radii[tried], np.tile(vertices[v], (len(tried), 1)))
+        first.add(k, tried, radii[tried], np.tile(vertices[v], (len(tried), 1)))
     return first.radii, first.site, first.next - first.radii, first.contact
-
-
-def _offer(first, site, rows, radii, contacts):
-    whole, places = np.full(len(first.radii), np.inf), np.zeros((len(first.radii), 3))
-    whole[rows], places[rows] = radii, contacts
-    first.add(site, whole, places)
 
 
 def _in_triangle(points, corners, normal):
@@ -240,7 +258,7 @@ def _in_triangle(points, corners, normal):
 
 class Wall(NamedTuple):
     area: float
-    error: float  # standard error of the area
+    error: float  # Standard error of the area.
     hits: int
 
 

@@ -16,6 +16,7 @@ from exact_signs import ExactPlanes, root_sum_sign
 from exact_structure import _Exact, _polytope, _walk, structure
 from exact_structure_families import TRIANGULATIONS, triangulate, variants
 from exact_walls import maximal_balls, sites_of, walls_of
+from made import made_solid
 
 CONVEX = families.named_convex()
 RANDOM = families.random_convex(60, seed=11)
@@ -390,9 +391,11 @@ def test_random_balls_find_the_sheets(shape):
 
 
 NOT_CONVEX = families.not_convex()
+MADE = [("crossed_plates", 0), ("cut_needles", 1), ("slots", 0), ("thin_shells", 7), ("nested_voids", 3), ("wedges", 7)]
+MADE = [families.Solid(made.name, made.vertices, made.triangles, 0.0) for made in itertools.starmap(made_solid, MADE)]
 
 
-@pytest.mark.parametrize("solid", NOT_CONVEX, ids=lambda solid: solid.name)
+@pytest.mark.parametrize("solid", [*NOT_CONVEX, *MADE], ids=lambda solid: solid.name)
 def test_balls_are_maximal(solid):
     balls, _ = maximal_balls(solid.vertices, solid.triangles, 5_000)
     assert np.isfinite(balls.radii).all() and (balls.gaps >= 0).all() and (balls.first != balls.second).all()
@@ -405,14 +408,14 @@ def sums(balls, site, values):
     return own.sum(), (own**2).sum() - own.sum() ** 2 / balls.tries[site]
 
 
-@pytest.mark.parametrize("solid", NOT_CONVEX, ids=lambda solid: solid.name)
+@pytest.mark.parametrize("solid", [*NOT_CONVEX, *MADE], ids=lambda solid: solid.name)
 def test_regions_fill_the_solid(solid):
     balls, sites = maximal_balls(solid.vertices, solid.triangles, 200_000)
     parts = np.array([sums(balls, k, balls.volumes) for k in range(len(sites.names))])
     assert parts[:, 0].min() > 0
     total, error = parts[:, 0].sum(), parts[:, 1].sum() ** 0.5
     assert total == pytest.approx(volume_of(solid), abs=5 * error)
-    assert error < 0.005 * total
+    assert error < 0.01 * total
 
 
 @pytest.mark.parametrize("solid", NOT_CONVEX, ids=lambda solid: solid.name)
@@ -430,6 +433,26 @@ def test_both_sides_of_a_wall_agree(solid):
             assert one == pytest.approx(two, abs=5 * (spread + also) ** 0.5), (sites.names[a], sites.names[b])
             checked += 1
     assert checked >= len(sites.names)
+
+
+@pytest.mark.parametrize("solid", NOT_CONVEX, ids=lambda solid: solid.name)
+def test_variants_have_the_same_walls(solid):
+    """Turned, as float32, far off and tiny: the same sites, and walls of the same areas."""
+    made, *others = families.moved(solid)
+    balls, sites = maximal_balls(made.vertices, made.triangles, 50_000)
+    walls = walls_of(balls, sites)
+    for other in others:
+        again, same = maximal_balls(other.vertices, other.triangles, 50_000, seed=2)
+        assert same.names == sites.names, other.name
+        scale = 1e6 if other.name.endswith("tiny") else 1.0
+        found = walls_of(again, same)
+        for pair in set(walls) | set(found):
+            if pair in walls and pair in found and min(walls[pair].hits, found[pair].hits) > 40:
+                error = (walls[pair].error ** 2 + (found[pair].error * scale**2) ** 2) ** 0.5
+                assert found[pair].area * scale**2 == pytest.approx(walls[pair].area, abs=5.5 * error), pair
+            else:
+                assert pair not in walls or walls[pair].hits < 120, pair
+                assert pair not in found or found[pair].hits < 120, pair
 
 
 @pytest.mark.parametrize(("side", "hole", "thickness"), [(4.0, 1.5, 0.5), (3.0, 0.5, 0.1)])
