@@ -55,7 +55,7 @@ struct VoronoiOptions {
   VoronoiMethod method = VoronoiMethod::automatic;
   /// Convex bodies: triangles count as one face if their corners lie within this distance of one plane, >= 0, mesh
   /// units. Junctions and seams within 8 times this distance are joined. 0 uses the mesh as given. If not given, it is
-  /// 8 times the rounding error of the largest coordinate. The error is that of the precision whose digits the longest
+  /// 16 times the rounding error of the largest coordinate. The error is that of the precision whose digits the longest
   /// coordinate fills. With up to 20 binary digits it is 0, with 21 to 24 that of single precision. Other bodies:
   /// ignored.
   std::optional<double> flatness = {};

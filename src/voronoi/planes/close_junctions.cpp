@@ -44,6 +44,14 @@ class Joiner {
   }
 
  private:
+  static constexpr double most_grown = 8;
+
+  /// Returns the tolerance of a junction.
+  [[nodiscard]] double reach(std::uint32_t junction) const {
+    constexpr double usual = 4;
+    return tolerance_ * std::clamp(structure_.junctions[junction].condition / usual, 1.0, most_grown);
+  }
+
   /// Lets each junction within the tolerance of others stand for them: the one with the most planes.
   void join_junctions() {
     auto& junctions = structure_.junctions;
@@ -57,8 +65,8 @@ class Joiner {
     for (std::uint32_t k = 0; k < count; ++k) {
       for (std::uint32_t m = k + 1; m < count; ++m) {
         const Vec3d step = junctions[order[m]].at - junctions[order[k]].at;
-        if (step.x > tolerance_) break;
-        if (length(step) <= tolerance_) joined.join(order[k], order[m]);
+        if (step.x > most_grown * tolerance_) break;
+        if (length(step) <= std::max(reach(order[k]), reach(order[m]))) joined.join(order[k], order[m]);
       }
     }
     std::map<std::uint32_t, Loop> groups;
@@ -130,7 +138,7 @@ class Joiner {
       if (k == edge.first || k == edge.second) continue;
       const Vec3d step = structure_.junctions[k].at - from;
       const double at = dot(step, along) / size;
-      if (at > 0 && at < 1 && squared_length(step - along * at) <= tolerance_ * tolerance_) found.emplace_back(at, k);
+      if (at > 0 && at < 1 && length(step - along * at) <= reach(k)) found.emplace_back(at, k);
     }
     std::sort(found.begin(), found.end());
     Loop out;

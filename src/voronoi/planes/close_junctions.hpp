@@ -12,6 +12,8 @@ namespace blum::voronoi {
 /// one, and sheets without an area vanish. A junction vanishes if exactly two seams end there, between the same
 /// regions.
 ///
+/// The tolerance of a junction grows with its condition, up to 8 times: where planes meet at small angles, rounding
+/// moves it further.
 /// @param tolerance  >= 0, mesh units; 0 changes nothing.
 void join_close_junctions(PlaneStructure& structure, double tolerance);
 

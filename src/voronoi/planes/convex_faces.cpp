@@ -314,7 +314,8 @@ double rounding_of_coordinates(const MeshView& mesh) {
   constexpr int exact = 20;
   constexpr int single = 24;
   if (digits <= exact) return 0;
-  return 8 * largest * (digits <= single ? 0x1p-24 : 0x1p-53);
+  constexpr double times = 16;
+  return times * largest * (digits <= single ? 0x1p-24 : 0x1p-53);
 }
 
 std::optional<ConvexFaces> convex_faces(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,

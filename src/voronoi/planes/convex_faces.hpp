@@ -27,10 +27,10 @@ struct ConvexFaces {
   Integer reach;    ///< bound on the coordinates of the polyhedron, in units
 };
 
-/// Returns the distance that rounding of a mesh's coordinates explains, mesh units. It is 8 times the rounding error of
-/// the largest coordinate. The error is that of the precision whose digits the longest coordinate fills. With 21 to 24
-/// binary digits it is single precision, with more digits double precision. Shorter coordinates count as not rounded,
-/// and the result is 0.
+/// Returns the distance that rounding of a mesh's coordinates explains, mesh units. It is 16 times the rounding error
+/// of the largest coordinate. The error is that of the precision whose digits the longest coordinate fills. With 21 to
+/// 24 binary digits it is single precision, with more digits double precision. Shorter coordinates count as not
+/// rounded, and the result is 0.
 [[nodiscard]] double rounding_of_coordinates(const MeshView& mesh);
 
 /// Returns the planes of one component of a mesh, or nothing if it is not a convex polyhedron.

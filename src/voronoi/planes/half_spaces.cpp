@@ -132,7 +132,7 @@ PlacedCorner HalfSpaces::place(const Base& base) const {
   }
   constexpr double unknown = std::numeric_limits<double>::infinity();
   Matrix inverse;
-  if (!invert(a, inverse)) return {{}, 0, unknown};
+  if (!invert(a, inverse)) return {{}, 0, unknown, unknown};
   std::array<double, 4> point{};
   const auto correct = [&](const std::array<double, 4>& residual) {
     for (std::size_t k = 0; k < 4; ++k) {
@@ -160,14 +160,14 @@ PlacedCorner HalfSpaces::place(const Base& base) const {
   // each at most 1, and the inverse.
   const double size = norm(inverse);
   const double contraction = norm(rest) + 32 * rounding * size;
-  if (!(contraction < 0.5)) return {{}, 0, unknown};
+  if (!(contraction < 0.5)) return {{}, 0, unknown, unknown};
   double worst = 0;
   double scale = size_;
   for (const double value : residual()) worst = std::max(worst, std::abs(value));
   for (const double value : point) scale = std::max(scale, std::abs(value));
   for (const double value : right) scale = std::max(scale, std::abs(value));
   const double error = size / (1 - contraction) * (worst + 32 * rounding * scale);
-  return {{point[0], point[1], point[2]}, point[3], error};
+  return {{point[0], point[1], point[2]}, point[3], error, size / (1 - contraction)};
 }
 
 PlacedCorner HalfSpaces::place_exactly(const Base& base) const {
@@ -192,8 +192,8 @@ PlacedCorner HalfSpaces::place_exactly(const Base& base) const {
                    last[2] * det3(first[0], first[1], first[3]) + last[3] * det3(first[0], first[1], first[2]));
   };
   const Integer all = det(5);
-  if (all.is_zero()) return place(base);
-  PlacedCorner out;
+  PlacedCorner out = place(base);
+  if (all.is_zero()) return out;
   for (std::size_t k = 0; k < 3; ++k) out.at[k] = ratio(det(k), all) * unit_;
   out.height = ratio(det(3), all) * unit_;
   out.error = 2 * rounding * std::max({std::abs(out.at.x), std::abs(out.at.y), std::abs(out.at.z), out.height});

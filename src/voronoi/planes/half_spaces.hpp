@@ -25,6 +25,8 @@ struct PlacedCorner {
   Vec3d at;
   double height = 0;
   double error = 0;  ///< bound on the error of each coordinate; infinite if none is known
+  /// How far the point moves at most if each half-space moves by 1; infinite if no bound is known.
+  double condition = 0;
 };
 
 /// Half-spaces in space and height h: normal . x + offset >= weight * h. For a plane, the normal is a unit vector and

@@ -13,6 +13,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/closest_point.hpp"
+#include "voronoi/label_geometry.hpp"
 #include "voronoi/planes/close_junctions.hpp"
 
 namespace blum::voronoi {
@@ -44,10 +45,10 @@ std::vector<std::vector<std::uint32_t>> components(const MeshView& mesh, const P
 bool is_clearly_reflex(const MeshView& mesh, const PolyhedronSites& sites, double flatness) {
   const auto height = [&](std::uint32_t of, std::uint32_t above) {
     const std::array<Vec3d, 3> p = triangle_corners(mesh, above);
-    const Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
+    const Vec3d normal = unit_normal(p[0], p[1], p[2]);
     double most = 0;
     for (const std::uint32_t v : mesh.triangles[of]) most = std::max(most, dot(normal, mesh.vertices[v] - p[0]));
-    return most / length(normal);
+    return most;
   };
   return std::any_of(sites.reflex_edges.begin(), sites.reflex_edges.end(), [&](std::uint32_t edge) {
     const auto [first, second] = sites.triangles_of[edge];

@@ -112,7 +112,7 @@ std::optional<PlaneStructure> plane_structure(const ConvexFaces& faces, const Co
   parallel_for(context, corners.size(), corners_per_range, "junctions", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const PlacedCorner placed = spaces.place_exactly(corners[k].base);
-      out.junctions[k] = {placed.at, placed.height, corners[k].planes};
+      out.junctions[k] = {placed.at, placed.height, placed.condition, corners[k].planes};
     }
   });
   if (!Builder(spaces, corners).add_sheets(out)) return std::nullopt;

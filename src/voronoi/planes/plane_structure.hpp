@@ -24,6 +24,7 @@ struct PlaneStructure {
   struct Junction {
     Vec3d at;
     double height = 0;                      ///< distance from its planes
+    double condition = 0;                   ///< PlacedCorner::condition of four of its planes
     std::vector<HalfSpaces::Index> planes;  ///< ascending; the last one is the floor on the surface
   };
   std::vector<Vec3d> normals;  ///< of the planes: unit vectors that point inwards
