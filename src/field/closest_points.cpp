@@ -65,6 +65,9 @@ std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
   return order;
 }
 
+/// Results are prefetched this many results before they are written.
+constexpr std::size_t ahead = 24;
+
 /// Prefetches a result for writing, because results are written in a different order than they are stored.
 void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
 #if defined(__GNUC__)
@@ -197,14 +200,16 @@ struct ClosestPointQuery::Data {
 
   /// Finds the signs of queries that lie close together, and reports their results. If several of them need winding
   /// numbers, they share the evaluation if possible.
-  void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group, Use use) const {
+  void finish(std::span<const PointSearch::Answer> group, Use use) const {
     static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
     InlineList<FoundPoint, sign::most_shared> found;
     InlineList<sign::SidedPoint, sign::most_shared> open;
     InlineList<std::size_t, sign::most_shared> open_index;
     double extent = 3 * longest;
-    for (const auto& [query, nearest] : group) {
-      const Vec3d& at = queries[query];
+    for (const PointSearch::Answer& answer : group) {
+      if (answer.nearest.site.has_value()) sides.prefetch(answer.nearest.site);
+    }
+    for (const auto& [query, at, nearest] : group) {
       if (!nearest.site.has_value()) {
         found.push_back({query, at, no_limit, SiteId::none()});
         continue;
@@ -235,9 +240,9 @@ struct ClosestPointQuery::Data {
       const Vec3d& query = queries[index];
       const double known = last ? with_slack(length(query - last->point), query) : no_limit;
       last = bvh.nearest(query, std::min(max_distance, known));
-      group.push_back({index, last.value_or(NearestSite{})});
+      group.push_back({index, query, last.value_or(NearestSite{})});
     }
-    finish(queries, group.span(), use);
+    finish(group.span(), use);
   }
 
   /// Returns the bound, increased by more than rounding can have reduced it.
@@ -382,7 +387,7 @@ void ClosestPointQuery::for_each_nearest(std::span<const Vec3d> queries, Use use
   data_->check(queries, context);
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
     search->nearest(queries, data_->max_distance, data_->bvh, context,
-                    [&](std::span<const PointSearch::Answer> group) { data_->finish(queries, group, use); });
+                    [&](std::span<const PointSearch::Answer> group) { data_->finish(group, use); });
     return;
   }
   const std::vector<std::uint32_t> order = order_along_curve(queries);
@@ -396,7 +401,7 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
   std::vector<ClosestPoint> results = detail::large_list<ClosestPoint>(queries.size());
   const auto put = [&](std::span<const FoundPoint> group) {
     for (std::size_t k = 0; k < group.size(); ++k) {
-      if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
+      if (k + ahead < group.size()) prefetch_to_write(&results[group[k + ahead].query]);
       const FoundPoint& found = group[k];
       results[found.query] = {found.point, found.distance, found.site,
                               found.site.has_value() ? data_->sites.triangle(found.site) : TriangleId::none()};

@@ -49,13 +49,16 @@ void PointSearch::nearest(std::span<const Vec3d> queries, double max_distance, c
   for (std::size_t first = 0; first < queries.size(); first += queries_per_batch) {
     const auto batch = queries.subspan(first, std::min(queries_per_batch, queries.size() - first));
     engine_.for_each_group(batch, context, [&](std::span<const cpu::FoundSite> group) {
+      for (const cpu::FoundSite& one : group) {
+        if (one.site.has_value()) projection_.prefetch(one.site);
+      }
       InlineList<Answer, cpu::PointEngine::most_per_group> answers;
       for (const cpu::FoundSite& one : group) {
-        const Vec3d& query = batch[one.query];
         Answer& answer = answers.emplace_back();
         answer.query = first + one.query;
-        if (!project(query, one, answer.nearest)) {
-          answer.nearest = search(query, one, max_distance, bvh).value_or(NearestSite{});
+        answer.at = one.at;
+        if (!project(one.at, one, answer.nearest)) {
+          answer.nearest = search(one.at, one, max_distance, bvh).value_or(NearestSite{});
         } else if (answer.nearest.distance > max_distance) {
           answer.nearest.site = SiteId::none();
         }

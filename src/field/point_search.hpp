@@ -35,6 +35,7 @@ class PointSearch {
   /// Answer to one query.
   struct Answer {
     std::size_t query = 0;  ///< index of the query
+    Vec3d at;               ///< the query
     NearestSite nearest;    ///< has no site if no site lies within max_distance
   };
 

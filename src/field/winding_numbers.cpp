@@ -37,14 +37,13 @@ class NumbersTogether {
   NumbersTogether(const WindingNumber& winding, const Box3& bounds, double max_error)
       : winding_(winding), bounds_(bounds), max_error_(max_error) {}
 
-  void find(std::span<const Vec3d> points, std::span<const PointSearch::Answer> group,
-            std::vector<double>& values) const {
+  void find(std::span<const PointSearch::Answer> group, std::vector<double>& values) const {
     static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
     InlineList<sign::NumberedPoint, sign::most_shared> numbered;
     InlineList<std::size_t, sign::most_shared> index;
     double extent = 3 * bounds_.diagonal();
     for (const PointSearch::Answer& answer : group) {
-      const Vec3d& at = points[answer.query];
+      const Vec3d& at = answer.at;
       const double distance = answer.nearest.site.has_value() ? answer.nearest.distance : 0;
       // A point that cannot share must not enlarge the box of the others.
       if (!(distance > 0) || !(distance < far_away * bounds_.diagonal())) {
@@ -86,7 +85,7 @@ std::vector<double> winding_numbers(const MeshView& mesh, std::span<const Vec3d>
     const NumbersTogether together(winding, bvh.bounds(), max_error);
     const PointSearch search(surface, sites, context);
     search.nearest(points, no_limit, bvh, context,
-                   [&](std::span<const PointSearch::Answer> group) { together.find(points, group, values); });
+                   [&](std::span<const PointSearch::Answer> group) { together.find(group, values); });
     return values;
   }
   parallel_for(context, points.size(), points_per_range, "winding numbers", [&](const WorkRange& range) {

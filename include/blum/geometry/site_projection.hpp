@@ -26,6 +26,9 @@ class SiteProjection {
   SiteProjection& operator=(SiteProjection&&) noexcept;
   ~SiteProjection();
 
+  /// Loads data of a site into the cache, for a later call of project().
+  void prefetch(SiteId site) const;
+
   /// Finds the closest point of a site, if the query is certainly in the site's domain. The domain is the set of points
   /// whose projection lies on the open site, and not on a site that touches it. The query must be at least `margin`
   /// away from all planes that bound the domain.

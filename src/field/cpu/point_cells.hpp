@@ -10,18 +10,18 @@
 namespace blum::cpu {
 
 /// Cells with at most this many points are not divided further.
-inline constexpr std::size_t points_per_leaf = 64;
+inline constexpr std::size_t points_per_leaf = 96;
 
 /// Returns true if the children of a cell may be passed to the kernel. The kernel divides each cell at least once.
 /// Cells of the last level cannot be divided, because their points are not sorted further.
 [[nodiscard]] inline bool has_divisible_children(const PointCell& cell) {
-  return cell.level + 1 < MortonPoints::levels;
+  return cell.level + 1 < morton_levels;
 }
 
 /// Returns the eight children of a cell. Some may have no points. Bit a of a child's index is set for the upper half
 /// along axis a.
 /// @param cell  must not be of the last level.
-[[nodiscard]] std::array<PointCell, 8> children_of(const MortonPoints& points, const PointCell& cell);
+[[nodiscard]] std::array<PointCell, 8> children_of(MortonOrder order, const PointCell& cell);
 
 struct PointScratch::Impl {
   TileScratch tile;
@@ -32,7 +32,7 @@ struct PointScratch::Impl {
     std::array<LeafColumns, 3> leaf;
     Candidates child;
   };
-  std::array<Level, MortonPoints::levels + 1> levels;
+  std::array<Level, morton_levels + 1> levels;
 };
 
 }  // namespace blum::cpu

@@ -20,6 +20,7 @@ namespace blum::cpu {
 /// Result for a query. If the query lies outside of the engine's box, the result is that of the point of the box
 /// closest to the query.
 struct FoundSite {
+  Vec3d at;                 ///< The query.
   std::uint32_t query = 0;  ///< Index of the query.
   SiteId site;              ///< The closest site, or one that touches it; none if unknown.
   SiteId other;             ///< A second site as close as `site` within rounding; none otherwise.
@@ -60,7 +61,10 @@ class PointEngine {
 
  private:
   struct Ordered;
+  struct Worker;
+  [[nodiscard]] Vec3f position(const Vec3d& query) const;
   [[nodiscard]] Ordered order(std::span<const Vec3d> queries, const Context& context) const;
+  void load(std::span<const Vec3d> queries, MortonOrder order, Worker& worker) const;
 
   bool is_usable_ = false;  ///< False if the mesh has no extent, or is too large or too small for single precision.
   Box3 box_;                ///< The engine's box, mesh units. Queries outside are moved to its border.

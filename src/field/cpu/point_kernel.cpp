@@ -20,7 +20,7 @@ constexpr std::size_t most_clusters = 8000;
 constexpr std::size_t clusters_per_point = 64;
 constexpr std::size_t candidates_per_point = 256;
 /// Points with at most this many candidates are not divided further.
-constexpr std::size_t few_candidates = 16;
+constexpr std::size_t few_candidates = 32;
 /// Two distances are equal within rounding if they differ by at most this, in the normalised frame.
 constexpr float tie = 2e-6F;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
@@ -101,7 +101,7 @@ class PointWorker {
     const std::size_t clusters = find_tile_clusters(job_.field, TileTest(place, nearest.point), scratch_);
     if (clusters > cell.size() * clusters_per_point) return give_up(cell, nearest.point);
     if (clusters > most_clusters && cell.size() > points_per_leaf && has_divisible_children(cell)) {
-      for (const PointCell& child : children_of(points_, cell)) {
+      for (const PointCell& child : children_of(points_.order, cell)) {
         if (child.size() > 0) this->cell(child);
       }
       return;
@@ -112,9 +112,7 @@ class PointWorker {
   }
 
  private:
-  static bool can_divide(const PointCell& cell) {
-    return cell.level < MortonPoints::levels && cell.size() > points_per_leaf;
-  }
+  static bool can_divide(const PointCell& cell) { return cell.level < morton_levels && cell.size() > points_per_leaf; }
 
   static std::size_t count_of(const Candidates& candidates) {
     return candidates[vertex_kind].count() + candidates[edge_kind].count() + candidates[face_kind].count() +
@@ -152,7 +150,7 @@ class PointWorker {
     const Halving parts = halves_of(cell);
     const BlockTest<8> test(parts, dominators);
     PointScratch::Impl::Level& here = mine_.levels[depth];
-    const std::array<PointCell, 8> cells = children_of(points_, cell);
+    const std::array<PointCell, 8> cells = children_of(points_.order, cell);
     for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
       here.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
     }

@@ -5,27 +5,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "blum/core/buffer.hpp"
+#include "blum/core/radix_sort.hpp"
 #include "blum/core/vec3.hpp"
 #include "field/cpu/tile_kernel.hpp"
 
 namespace blum::cpu {
 
-/// Points in the normalised frame, sorted along a Morton curve through the cells of a cube.
+/// Indices of points, each with the Morton code of its cell: the cells of a cube, 2^levels per side.
+using MortonOrder = std::span<const detail::KeyedIndex>;
+constexpr unsigned morton_levels = 10;
+
+/// Points of a cell in the normalised frame, sorted along the Morton curve.
 struct MortonPoints {
-  static constexpr unsigned levels = 10;
   /// Vectors may be read this far past the end.
   static constexpr std::size_t padding = 64;
 
   std::array<Buffer<float>, 3> coordinate;
-  /// Morton code of each point's cell, ascending. The cube has 2^levels cells per side.
-  std::vector<std::uint32_t> code;
-  Vec3d lower;      ///< Corner of the cube.
-  double side = 0;  ///< Side of the cube.
-
-  [[nodiscard]] std::size_t size() const { return code.size(); }
+  MortonOrder order;
 };
 
 /// Points that lie in one cube: a cell of some level. If a cell of the last level has too many points, this is a part
@@ -40,7 +40,7 @@ struct PointCell {
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-/// Results for each point.
+/// Results for each point of a cell.
 struct PointResults {
   /// Squared distance to a point of the surface, normalised. If `site` is known, the point is the closest one within
   /// rounding.
@@ -49,7 +49,7 @@ struct PointResults {
   Buffer<std::uint32_t> other;  ///< another site as close within rounding; dead_record if none
 };
 
-/// Input of all cells, and the memory for their results.
+/// Input of a cell, and the memory for its results.
 struct PointJob {
   FieldJob field;  ///< only its sites, forest and cancellation are used
   const MortonPoints* points = nullptr;
@@ -71,9 +71,14 @@ class PointScratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Returns cells that together contain all points. Each has at most 16384 points. If possible, there are enough cells
-/// for the given number of threads.
-[[nodiscard]] std::vector<PointCell> point_cells(const MortonPoints& points, int threads);
+/// Returns the largest number of points of a cell, at most 16384. If possible, there are enough cells for the given
+/// number of threads.
+[[nodiscard]] std::size_t most_per_cell(std::size_t points, int threads);
+
+/// Returns cells that together contain all points. Each has at most `most` points.
+/// @param order  sorted by the codes of cells that have more than `most` points, and by those of their children.
+/// @param root   the cube of all points.
+[[nodiscard]] std::vector<PointCell> point_cells(MortonOrder order, const PointCell& root, std::size_t most);
 
 /// Finds the closest sites of the points of a cell. Culls sites as for the tiles of a field.
 void compute_point_cell(const PointJob& job, const PointCell& cell, PointScratch& scratch);

@@ -38,6 +38,13 @@ class Sides {
   /// Returns the same if the closest site decides it. Otherwise returns nullopt, and the caller must decide: inside if
   /// the query's own winding number is above 1/2.
   [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const;
+  /// Loads data of a site into the cache, for a later call of is_inside_by_site().
+  void prefetch([[maybe_unused]] SiteId site) const {
+#if defined(__GNUC__)
+    if (normals_) __builtin_prefetch(&normals_->normal(site));
+#endif
+  }
+
   /// Returns the winding numbers; null if the closest sites decide all sides.
   [[nodiscard]] const WindingNumber* winding() const { return winding_ ? &*winding_ : nullptr; }
 

@@ -138,6 +138,23 @@ SiteProjection::SiteProjection(SiteProjection&&) noexcept = default;
 SiteProjection& SiteProjection::operator=(SiteProjection&&) noexcept = default;
 SiteProjection::~SiteProjection() = default;
 
+void SiteProjection::prefetch([[maybe_unused]] SiteId site) const {
+#if defined(__GNUC__)
+  const Data& data = *data_;
+  const std::size_t vertices = data.positions.size();
+  const std::size_t borders = vertices + data.edges.size();
+  if (site.value >= borders) {
+    const TriangleFrame& frame = data.faces[site.value - borders];
+    __builtin_prefetch(&frame);
+    __builtin_prefetch(&frame.apex);  // its end is in another cache line
+  } else {
+    const void* const start = site.value < vertices ? static_cast<const void*>(&data.first[site.value])
+                                                    : static_cast<const void*>(&data.edges[site.value - vertices]);
+    __builtin_prefetch(start);
+  }
+#endif
+}
+
 bool SiteProjection::project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const {
   const Data& data = *data_;
   const Vec3d q = query * data.scale;
