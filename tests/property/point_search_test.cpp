@@ -207,6 +207,31 @@ TEST(PointSearch, MatchesSingleQueriesInACrowd) {
   }
 }
 
+/// Queries are first sorted into 64, 512 or 4,096 buckets, by their number. A bucket with many of them is sorted again.
+/// Results must not depend on this, nor on the place of a query in the list.
+TEST(PointSearch, MatchesSingleQueriesForAnyBuckets) {
+  const TriangleMesh mesh = make_organic({.frequency = 8, .holes = 2});
+  const ClosestPointQuery query(mesh, is_unsigned);
+  for (const std::size_t count : {5000U, 20000U, 70000U}) {
+    for (const std::size_t spread : {1U, 2U, 200U}) {
+      SCOPED_TRACE(testing::Message() << count << " queries, one of " << spread << " anywhere");
+      Random random(23);
+      std::vector<Vec3d> queries;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Vec3d near = mesh.vertices[0] + random.in_ball() * 0.01;
+        queries.push_back(k % spread == 0 ? random.in_ball() * 1.5 : near);
+      }
+      const std::vector<ClosestPoint> found = query.nearest(queries, {.threads = 1});
+      const std::vector<ClosestPoint> of_three = query.nearest(queries, {.threads = 3});
+      for (std::size_t k = 0; k < count; ++k) {
+        ASSERT_TRUE(is_same(found[k], of_three[k])) << k;
+        const bool is_checked = k % 7 == 0;
+        ASSERT_TRUE(!is_checked || is_same(found[k], query.nearest(queries[k]))) << k;
+      }
+    }
+  }
+}
+
 /// These points are so close to an open sheet that rounding may decide the side. All queries must give the same answer.
 TEST(PointSearch, SignsNextToASheetMatchSingleQueries) {
   const TriangleMesh sheet = test::flat_sheet(18);
