@@ -19,6 +19,17 @@ namespace {
 constexpr std::size_t most_primitives = 48;
 /// Number of primitives whose distances at the corners are computed.
 constexpr std::size_t most_upper = 3;
+/// Greatest number of primitives for which a piece is divided where its closest site changes. If there are more, most
+/// parts of the piece would have several closest sites, too.
+constexpr std::size_t most_for_sites = 16;
+/// Rounding errors of positions, where the largest coordinate is about 1.
+constexpr double rounding = 1e-14;
+/// A piece is not divided at places that are closer to its corners than this.
+constexpr double small = 1e-9;
+/// Place on a side, as a share of its length, at which the site that is closest near the end is searched.
+constexpr double beside = 1e-4;
+/// Greatest number of pairs of sites that are examined for one side.
+constexpr int most_tries = 5;
 /// Factor that makes up for rounding where a limit of a search was computed.
 constexpr double slack = 1 + 1e-9;
 
@@ -28,6 +39,34 @@ double largest(const std::array<double, 3>& values) {
 
 double sum(const std::array<double, 3>& values) {
   return values[0] + values[1] + values[2];
+}
+
+bool is_small(const Vec3d& v) {
+  return squared_length(v) < small * small;
+}
+
+/// Returns the place between the ends of a segment, 0 to 1, where an affine function is 0. Returns nullopt if there is
+/// no such place, or the function is small at an end.
+/// @param values  of the function at the ends.
+std::optional<double> zero_between(const std::array<Vec3d, 2>& values) {
+  const Vec3d change = values[1] - values[0];
+  if (is_small(values[0]) || is_small(values[1]) || !(dot(values[0], values[1]) < 0)) return std::nullopt;
+  const double place = -dot(values[0], change) / squared_length(change);
+  return is_small(values[0] + change * place) ? std::optional(place) : std::nullopt;
+}
+
+/// Returns the place, 0 to 1, where a quadratic function changes its sign. Returns nullopt if the function is small at
+/// 0 or 1, or has the same sign at both.
+/// @param square  factor of the square.
+std::optional<double> sign_change(double at_0, double at_1, double square) {
+  if (at_0 > 0) return at_1 < 0 ? sign_change(-at_0, -at_1, -square) : std::nullopt;
+  if (!(at_0 < -small && at_1 > small)) return std::nullopt;
+  const double slope = at_1 - at_0 - square;
+  return -2 * at_0 / (slope + std::sqrt(std::max(slope * slope - 4 * square * at_0, 0.0)));
+}
+
+std::array<double, 3> distances_from(const Vec3d& point, const std::array<Vec3d, 3>& corners) {
+  return {length(corners[0] - point), length(corners[1] - point), length(corners[2] - point)};
 }
 
 /// Returns true if two triangles with a common side lie in one plane, and are a convex quadrilateral together.
@@ -45,6 +84,32 @@ bool are_convex(const std::array<Vec3d, 3>& p, std::size_t side, const Vec3d& ti
 }
 
 }  // namespace
+
+/// Position and bounds of a corner.
+struct DeviationBounds::Corner {
+  Vec3d position;
+  double value = 0;
+  double error = 0;
+};
+
+DeviationBounds::Corner DeviationBounds::between(const Corner& a, const Corner& b, double place) {
+  return {a.position + (b.position - a.position) * place, a.value + (b.value - a.value) * place,
+          a.error + (b.error - a.error) * place};
+}
+
+/// Returns a part of a piece.
+/// @param share  of the piece's area.
+DeviationPiece DeviationBounds::part_of(const DeviationPiece& piece, const std::array<Corner, 3>& corners,
+                                        double share) {
+  DeviationPiece out = piece;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.corners[k] = corners[k].position;
+    out.value[k] = corners[k].value;
+    out.error[k] = corners[k].error;
+  }
+  out.area = piece.area * share;
+  return out;
+}
 
 /// Values at the corners of a piece, linear in between.
 struct DeviationBounds::Linear {
@@ -94,10 +159,8 @@ double mean_square(const std::array<double, 3>& v) {
 
 void set_around(DeviationPiece& piece, double deviation) {
   const Vec3d centroid = centroid_of(piece.corners);
-  for (std::size_t k = 0; k < 3; ++k) {
-    piece.value[k] = deviation;
-    piece.error[k] = length(piece.corners[k] - centroid);
-  }
+  piece.value.fill(deviation);
+  piece.error = distances_from(centroid, piece.corners);
 }
 
 DeviationBounds::DeviationBounds(const MeshView& mesh, const ClosestPointQuery* signs, const Context& context)
@@ -250,17 +313,17 @@ DeviationBounds::Linear DeviationBounds::lower_bound(const DeviationPiece& piece
   return best;
 }
 
-void DeviationBounds::set_values(DeviationPiece& piece, const Search& search, const Linear& lower,
+void DeviationBounds::set_values(DeviationPiece& piece, const Vec3d& centroid, const Linear& lower,
                                  const Linear& upper) const {
   for (std::size_t k = 0; k < 3; ++k) {
     piece.value[k] = (upper.at[k] + lower.at[k]) / 2;
     piece.error[k] = std::max((upper.at[k] - lower.at[k]) / 2, 0.0);
   }
   if (signs_ == nullptr) return;
-  const double at_centroid = piece.sign == 0 ? signs_->nearest(search.centroid).distance : piece.sign;
+  const double at_centroid = piece.sign == 0 ? signs_->nearest(centroid).distance : piece.sign;
   const bool may_jump = signs_->sign_may_jump();
   const bool is_away = std::min({lower.at[0], lower.at[1], lower.at[2]}) > 1e-14;
-  if (piece.sign == 0 && !is_away && !may_jump) return set_crossing(piece, search, upper, at_centroid);
+  if (piece.sign == 0 && !is_away && !may_jump) return set_crossing(piece, centroid, upper, at_centroid);
   // If signs may jump, halves of the piece may have another sign.
   if (!may_jump) piece.sign = at_centroid < 0 ? -1 : 1;
   if (!(at_centroid < 0)) return;
@@ -268,18 +331,19 @@ void DeviationBounds::set_values(DeviationPiece& piece, const Search& search, co
 }
 
 /// Sets the values of a piece on which the sign may change.
-void DeviationBounds::set_crossing(DeviationPiece& piece, const Search& search, const Linear& upper,
+void DeviationBounds::set_crossing(DeviationPiece& piece, const Vec3d& centroid, const Linear& upper,
                                    double at_centroid) {
-  const bool is_close = sum(upper.at) < sum(search.reach);
+  const std::array<double, 3> reach = distances_from(centroid, piece.corners);
+  const bool is_close = sum(upper.at) < sum(reach);
   piece.value.fill(is_close ? 0 : at_centroid);
-  piece.error = is_close ? upper.at : search.reach;
+  piece.error = is_close ? upper.at : reach;
 }
 
 /// Finds the primitives that may be closest to a point of a piece. Returns an upper bound.
 DeviationBounds::Linear DeviationBounds::examine(const DeviationPiece& piece, Search& search) const {
   search.centroid = centroid_of(piece.corners);
+  search.reach = distances_from(search.centroid, piece.corners);
   for (std::size_t k = 0; k < 3; ++k) {
-    search.reach[k] = length(piece.corners[k] - search.centroid);
     // The piece has bounds already, which limit the search.
     search.limit = std::max(search.limit, std::abs(piece.value[k]) + piece.error[k] + search.reach[k]);
   }
@@ -307,47 +371,225 @@ DeviationBounds::Linear DeviationBounds::examine(const DeviationPiece& piece, Se
   return upper_bound(piece, search);
 }
 
-void DeviationBounds::sharpen(DeviationPiece& piece) const {
-  Search search;
-  const Linear upper = examine(piece, search);
-  const Linear lower = lower_bound(piece, search, upper);
-  set_values(piece, search, lower, upper);
-  piece.is_sharp = true;
-  // Where the distance bends most, the direction to the closest point changes most.
-  double most = 0;
-  std::size_t side = 3;
+/// Returns a point minus its projection onto the line through an edge, the plane of a face, or a vertex. This is an
+/// affine function of the point.
+Vec3d DeviationBounds::offset_from(SiteId site, const Vec3d& point) const {
+  const std::array<std::int32_t, 3> v = sites_.vertices(site);
+  const auto corner = [&](std::size_t k) { return mesh_.vertices[static_cast<std::size_t>(v[k])]; };
+  const Vec3d away = point - corner(0);
+  if (v[1] < 0) return away;
+  const Vec3d side = corner(1) - corner(0);
+  if (v[2] < 0) return away - side * (dot(away, side) / squared_length(side));
+  const Vec3d normal = cross(side, corner(2) - corner(0));
+  return normal * (dot(away, normal) / squared_length(normal));
+}
+
+/// Returns true if the projection of a point onto the line of an edge lies on the edge. A vertex is always the
+/// projection.
+bool DeviationBounds::is_on(SiteId site, const Vec3d& point) const {
+  const std::array<std::int32_t, 3> v = sites_.vertices(site);
+  if (v[1] < 0) return true;
+  const Vec3d& first = mesh_.vertices[static_cast<std::size_t>(v[0])];
+  const Vec3d side = mesh_.vertices[static_cast<std::size_t>(v[1])] - first;
+  const double along = dot(point - first, side);
+  const double least = rounding * length(side);
+  return along >= -least && along <= squared_length(side) + least;
+}
+
+/// Returns true if a vertex or edge is closest to all points of a piece, up to rounding. Let q be the projections of
+/// points x of the piece. Each other primitive must lie behind the planes through q with normals x - q, or be further
+/// away by the bound of lower_bound(). For a vertex v, (v - q).(x - q) is an affine function of x. So if it is not
+/// above 0 at the corners, it is not above 0 in between.
+bool DeviationBounds::is_only(const DeviationPiece& piece, SiteId site, const Search& search) const {
+  std::array<Vec3d, 3> offset;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!is_on(site, piece.corners[k])) return false;
+    offset[k] = offset_from(site, piece.corners[k]);
+  }
+  const auto is_behind = [&](const Vec3d& v) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (dot(v - (piece.corners[k] - offset[k]), offset[k]) > rounding * 0.1) return false;
+    }
+    return true;
+  };
+  return std::all_of(search.found.begin(), search.found.end(), [&](const NearestPrimitive& one) {
+    const Triangle v = primitive_vertices(mesh_, one.primitive);
+    if (std::all_of(v.begin(), v.end(), [&](std::uint32_t k) { return is_behind(mesh_.vertices[k]); })) return true;
+    const Vec3d away = search.centroid - one.point;
+    const double size = length(away);
+    if (!(size > 0)) return false;
+    const Vec3d normal = away / size;
+    const double front = front_of(one.primitive, normal, search.centroid);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (dot(normal, piece.corners[k] - search.centroid) - front < length(offset[k]) - rounding) return false;
+    }
+    return true;
+  });
+}
+
+/// Returns places on a segment, 0 to 1, where the closest site may change from one site to another. The segment may
+/// also cross a site there. For all sides of a piece, the same entry is on the same line or curve. Leaves out places
+/// that are close to an end.
+DeviationBounds::Places DeviationBounds::places_between(const std::array<Vec3d, 2>& ends,
+                                                        const std::array<SiteId, 2>& sites) const {
+  std::array<std::array<Vec3d, 2>, 2> offset;  // from each site, at each end
+  for (std::size_t s = 0; s < 2; ++s) {
+    for (std::size_t e = 0; e < 2; ++e) offset[s][e] = offset_from(sites[s], ends[e]);
+  }
+  // The projections onto a face and its edge, or an edge and its end, are the same where the closest site changes.
+  return {zero_between({offset[0][0] - offset[1][0], offset[0][1] - offset[1][1]}),
+          sign_change(squared_length(offset[0][0]) - squared_length(offset[1][0]),
+                      squared_length(offset[0][1]) - squared_length(offset[1][1]),
+                      squared_length(offset[0][1] - offset[0][0]) - squared_length(offset[1][1] - offset[1][0])),
+          zero_between(offset[0]), zero_between(offset[1])};
+}
+
+/// Finds a place on a side of a piece where the closest site changes, or the side crosses the mesh. Sets the cut there,
+/// and where the same line crosses another side. Returns false if no place is found.
+bool DeviationBounds::cut_across(const DeviationPiece& piece, std::size_t side, std::array<double, 3>& cut) const {
+  const auto ends_of = [&](std::size_t k) { return std::array{piece.corners[k], piece.corners[(k + 1) % 3]}; };
+  const std::array<Vec3d, 2> ends = ends_of(side);
+  const auto at = [&](double place) { return ends[0] + (ends[1] - ends[0]) * place; };
+  // Several sites may be closest to the ends, because earlier cuts ended there.
+  std::array<SiteId, 2> sites{bvh_.nearest(at(beside))->site, bvh_.nearest(at(1 - beside))->site};
+  double begin = 0;
+  double end = 1;
+  for (int tries = 0; tries < most_tries; ++tries) {
+    const Places places = places_between(ends, sites);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!places[k]) continue;
+      const Vec3d there = at(*places[k]);
+      const std::array<double, 2> distances{length(offset_from(sites[0], there)), length(offset_from(sites[1], there))};
+      const double least = std::min(distances[0], distances[1]);
+      const bool is_change = std::abs(distances[0] - distances[1]) < small || least < small;
+      if (!is_change || bvh_.nearest(there)->distance < least - small) continue;
+      cut[side] = *places[k];
+      for (const std::size_t other : {(side + 1) % 3, (side + 2) % 3}) {
+        const std::optional<double> place = places_between(ends_of(other), sites)[k];
+        if (!place) continue;
+        cut[other] = *place;
+        break;
+      }
+      return true;
+    }
+    if (tries == 0 && sites[0] == sites[1]) return false;
+    // Between the ends, other sites are closest. The first of them is searched.
+    const double middle = begin + (end - begin) / 2;
+    const SiteId third = bvh_.nearest(at(middle))->site;
+    if (third == sites[0]) {
+      begin = middle;
+    } else {
+      end = middle;
+      sites[1] = third;
+    }
+  }
+  return false;
+}
+
+/// Returns places on the sides of a piece: it is to be divided through these. They are 0 at corner k and 1 at the next
+/// one; 0 means that the side is not divided. If possible, they are on a line on which the closest site changes.
+std::array<double, 3> DeviationBounds::cut_of(const DeviationPiece& piece) const {
+  std::array<double, 3> out{};
+  const std::array<double, 3> squared = squared_sides(piece.corners);
+  if (piece.may_cut) {
+    std::array<std::size_t, 3> sides{0, 1, 2};
+    std::sort(sides.begin(), sides.end(), [&](std::size_t a, std::size_t b) { return squared[a] > squared[b]; });
+    for (const std::size_t side : sides) {
+      if (cut_across(piece, side, out)) return out;
+    }
+  }
+  out[piece.side < 3 ? piece.side : longest_of(squared)] = 0.5;
+  return out;
+}
+
+/// Divides the side on which the distance bends most. There, the direction from the closest point changes most.
+void DeviationBounds::choose_bend(DeviationPiece& piece, const std::array<Vec3d, 3>& offsets) const {
+  double most = piece.largest_error();
   std::array<Vec3d, 3> away{};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (upper.at[k] > 0) away[k] = (piece.corners[k] - upper.closest[k]) / upper.at[k];
+    const double distance = length(offsets[k]);
+    if (distance > 0) away[k] = offsets[k] / distance;
   }
+  piece.side = 3;
+  piece.may_cut = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const double bend = dot(away[next] - away[k], piece.corners[next] - piece.corners[k]);
-    if (bend > most) {
-      most = bend;
-      side = k;
-    }
+    if (!(bend > most)) continue;
+    most = bend;
+    piece.side = static_cast<std::uint8_t>(k);
   }
-  piece.side = static_cast<std::uint8_t>(most > piece.largest_error() ? side : 3);
 }
 
-std::array<DeviationPiece, 2> DeviationBounds::halves(const DeviationPiece& piece) const {
-  const std::size_t side = piece.side < 3 ? piece.side : longest_of(squared_sides(piece.corners));
-  const std::size_t next = (side + 1) % 3;
-  const Vec3d middle = (piece.corners[side] + piece.corners[next]) * 0.5;
-  std::array<DeviationPiece, 2> out;
-  for (std::size_t k = 0; k < 2; ++k) {
-    out[k].corners = piece.corners;
-    const std::size_t moved = k == 0 ? next : side;
-    out[k].corners[moved] = middle;
-    out[k].value = piece.value;
-    out[k].error = piece.error;
-    out[k].value[moved] = (piece.value[side] + piece.value[next]) / 2;
-    out[k].error[moved] = (piece.error[side] + piece.error[next]) / 2;
-    out[k].area = piece.area / 2;
-    out[k].sign = piece.sign;
-    sharpen(out[k]);
+/// Computes the bounds of a piece whose closest site is known. The distance is the length of an affine function, which
+/// is convex. So its values at the corners and its tangent at the centroid enclose it.
+void DeviationBounds::set_by_site(DeviationPiece& piece) const {
+  const Vec3d centroid = centroid_of(piece.corners);
+  std::array<Vec3d, 3> offsets;
+  for (std::size_t k = 0; k < 3; ++k) offsets[k] = offset_from(piece.site, piece.corners[k]);
+  const Vec3d middle = centroid_of(offsets);
+  const double distance = length(middle);
+  Linear lower;
+  Linear upper;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    lower.at[k] = distance > 0 ? dot(offsets[k], middle) / distance : 0;
+    upper.at[k] = length(offsets[k]);
+    least = std::min(least, lower.at[k]);
   }
+  // Rounding in is_only() changes a distance d by up to rounding / d.
+  const double error = rounding / std::max(least, std::sqrt(rounding));
+  for (std::size_t k = 0; k < 3; ++k) {
+    lower.at[k] -= error;
+    upper.at[k] += error;
+  }
+  set_values(piece, centroid, lower, upper);
+  choose_bend(piece, offsets);
+}
+
+void DeviationBounds::sharpen(DeviationPiece& piece) const {
+  piece.is_sharp = true;
+  if (piece.site.has_value()) return set_by_site(piece);
+  Search search;
+  const Linear upper = examine(piece, search);
+  const Linear lower = lower_bound(piece, search, upper);
+  set_values(piece, search.centroid, lower, upper);
+  std::array<Vec3d, 3> offsets;
+  for (std::size_t k = 0; k < 3; ++k) offsets[k] = piece.corners[k] - upper.closest[k];
+  choose_bend(piece, offsets);
+  if (search.is_crowded || search.found.size() > most_for_sites || !(piece.largest_error() > rounding)) return;
+  const SiteId site = search.found[0].site;
+  if (sites_.site(site).kind != SiteKind::face && is_only(piece, site, search)) {
+    piece.site = site;
+    return set_by_site(piece);
+  }
+  piece.may_cut = true;
+}
+
+DeviationBounds::Parts DeviationBounds::parts(const DeviationPiece& piece) const {
+  const std::array<double, 3> cut = cut_of(piece);
+  // The piece is turned so that the first side is cut, and the last one if there are two cuts.
+  std::size_t side = 0;
+  while (!(cut[side] > 0) || cut[(side + 1) % 3] > 0) ++side;
+  std::array<Corner, 3> c;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t at = (side + k) % 3;
+    c[k] = {piece.corners[at], piece.value[at], piece.error[at]};
+  }
+  const double first = cut[side];
+  const double last = cut[(side + 2) % 3];
+  const Corner on_first = between(c[0], c[1], first);
+  Parts out;
+  if (last > 0) {
+    const Corner on_last = between(c[2], c[0], last);
+    out.push_back(part_of(piece, {c[0], on_first, on_last}, first * (1 - last)));
+    out.push_back(part_of(piece, {on_first, c[1], c[2]}, 1 - first));
+    out.push_back(part_of(piece, {on_first, c[2], on_last}, first * last));
+  } else {
+    out.push_back(part_of(piece, {c[0], on_first, c[2]}, first));
+    out.push_back(part_of(piece, {on_first, c[1], c[2]}, 1 - first));
+  }
+  for (DeviationPiece& part : out) sharpen(part);
   return out;
 }
 

@@ -4,10 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/inline_list.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/bvh.hpp"
@@ -24,8 +27,10 @@ struct DeviationPiece {
   std::array<double, 3> error{};  ///< not negative
   double area = 0;                ///< above 0, in a unit of the caller's choice
   std::int8_t sign = 0;           ///< sign of all deviations; 0: unknown, or both signs occur
-  std::uint8_t side = 3;          ///< side to halve, from corner `side` to the next one; 3: the longest
+  std::uint8_t side = 3;          ///< side to divide, from corner `side` to the next one; 3: the longest
   bool is_sharp = false;          ///< true if the bounds follow from several primitives of the mesh
+  bool may_cut = false;           ///< true if a cut where the closest site changes is better than halves
+  SiteId site;  ///< vertex or edge of the mesh that is closest to all points of the piece; none(): several, or unknown
 
   [[nodiscard]] double mean_value() const { return (value[0] + value[1] + value[2]) / 3; }
   /// Returns a bound on the mean of the error.
@@ -52,10 +57,12 @@ class DeviationBounds {
   /// Method: docs/theory/surface-maps.md.
   void sharpen(DeviationPiece& piece) const;
 
-  /// Halves a piece, and computes the bounds of both halves.
-  [[nodiscard]] std::array<DeviationPiece, 2> halves(const DeviationPiece& piece) const;
+  using Parts = InlineList<DeviationPiece, 3>;
+  /// Divides a piece into two or three parts, and computes their bounds.
+  [[nodiscard]] Parts parts(const DeviationPiece& piece) const;
 
  private:
+  struct Corner;
   struct Linear;
   struct Search;
   [[nodiscard]] Linear examine(const DeviationPiece& piece, Search& search) const;
@@ -67,8 +74,19 @@ class DeviationBounds {
   [[nodiscard]] double front_of(std::uint32_t primitive, const Vec3d& direction, const Vec3d& origin) const;
   [[nodiscard]] Linear upper_bound(const DeviationPiece& piece, const Search& search) const;
   [[nodiscard]] Linear lower_bound(const DeviationPiece& piece, const Search& search, const Linear& upper) const;
-  void set_values(DeviationPiece& piece, const Search& search, const Linear& lower, const Linear& upper) const;
-  static void set_crossing(DeviationPiece& piece, const Search& search, const Linear& upper, double at_centroid);
+  [[nodiscard]] Vec3d offset_from(SiteId site, const Vec3d& point) const;
+  [[nodiscard]] bool is_on(SiteId site, const Vec3d& point) const;
+  [[nodiscard]] bool is_only(const DeviationPiece& piece, SiteId site, const Search& search) const;
+  using Places = std::array<std::optional<double>, 4>;
+  static Corner between(const Corner& a, const Corner& b, double place);
+  static DeviationPiece part_of(const DeviationPiece& piece, const std::array<Corner, 3>& corners, double share);
+  [[nodiscard]] Places places_between(const std::array<Vec3d, 2>& ends, const std::array<SiteId, 2>& sites) const;
+  bool cut_across(const DeviationPiece& piece, std::size_t side, std::array<double, 3>& cut) const;
+  [[nodiscard]] std::array<double, 3> cut_of(const DeviationPiece& piece) const;
+  void choose_bend(DeviationPiece& piece, const std::array<Vec3d, 3>& offsets) const;
+  void set_by_site(DeviationPiece& piece) const;
+  void set_values(DeviationPiece& piece, const Vec3d& centroid, const Linear& lower, const Linear& upper) const;
+  static void set_crossing(DeviationPiece& piece, const Vec3d& centroid, const Linear& upper, double at_centroid);
 
   MeshView mesh_;
   SiteTable sites_;

@@ -39,8 +39,8 @@ constexpr std::size_t many_pieces = 20'000;
 constexpr std::size_t search_share = 7;
 /// A mesh is cut at once if it has more triangles than the number of pieces divided by this.
 constexpr std::size_t triangles_for_cut = 4;
-/// Number of bounds for one piece and its halves.
-constexpr std::size_t least_per_piece = 3;
+/// Greatest number of bounds for one piece and its parts.
+constexpr std::size_t least_per_piece = 4;
 
 /// Statistics of all pieces, in the units of the search.
 struct Statistics {
@@ -89,6 +89,7 @@ class DeviationSearch {
       divide(wanted);
       found = statistics();
     }
+    add_percentiles(found, tolerance_of(found) / 1000);
     return found;
   }
 
@@ -164,9 +165,13 @@ class DeviationSearch {
     out.mean_magnitude = magnitude.value() / area_;
     out.rms = unit * std::sqrt(square.value() / area_);
     out.rms_error = std::sqrt(square_error.value() / area_);
-    out.lower = percentiles_of(-1, tolerance_of(out) / 1000);
-    out.upper = percentiles_of(1, tolerance_of(out) / 1000);
     return out;
+  }
+
+  /// Adds the bounds of percentiles. @param error  they may be this much wider than needed.
+  void add_percentiles(Statistics& found, double error) const {
+    found.lower = percentiles_of(-1, error);
+    found.upper = percentiles_of(1, error);
   }
 
   /// Returns bounds on the percentiles: those of the values plus the errors times `side`, which is 1 or -1.
@@ -189,11 +194,13 @@ class DeviationSearch {
 
   /// Returns the pieces that must be divided to make the statistics more precise, in rising order. Returns none if all
   /// statistics are precise enough.
-  [[nodiscard]] std::vector<std::uint32_t> pieces_to_divide(const Statistics& found) {
+  [[nodiscard]] std::vector<std::uint32_t> pieces_to_divide(Statistics& found) {
     const double tolerance = 0.99 * tolerance_of(found);  // rounding is added later
     const bool is_mean_wanted = found.mean_error > tolerance || found.rms_error > tolerance;
     const double of_percentiles = (tolerance_ ? 1 : 2) * tolerance;
     Ranges by_area;
+    // For a more precise mean, pieces are divided whatever the percentiles.
+    if (!is_mean_wanted) add_percentiles(found, tolerance / 20);
     for (std::size_t k = 0; k < found.lower.size(); ++k) {
       const std::pair bounds{found.lower[k], found.upper[k]};
       if (half_width(bounds) > of_percentiles) by_area.push_back(bounds);
@@ -233,7 +240,7 @@ class DeviationSearch {
   /// others needless.
   void keep_worst(std::vector<std::uint32_t>& wanted) {
     // Many pieces are divided in few rounds, because each computes all statistics again.
-    const std::size_t least = pieces_.size() / (pieces_.size() < many_pieces ? 16 : 3) + 1;
+    const std::size_t least = pieces_.size() / (pieces_.size() < many_pieces ? 6 : 3) + 1;
     if (wanted.size() <= least) return;
     std::vector<double> errors;
     for (const std::uint32_t k : wanted) errors.push_back(pieces_[k].mean_error());
@@ -306,12 +313,13 @@ class DeviationSearch {
         }
         ++spent;
       }
-      if ((spent > 0 && now.mean_error() <= goal_) || spent + 2 > most) {
+      if ((spent > 0 && now.mean_error() <= goal_) || spent + 3 > most) {
         out.push_back(now);
         continue;
       }
-      for (const DeviationPiece& half : bounds_->halves(now)) open.push_back(half);
-      spent += 2;
+      const DeviationBounds::Parts parts = bounds_->parts(now);
+      open.insert(open.end(), parts.begin(), parts.end());
+      spent += parts.size();
     }
     return spent;
   }

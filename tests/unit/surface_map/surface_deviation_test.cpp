@@ -141,6 +141,31 @@ TEST(SurfaceDeviation, KeepsTheLargestErrorThatIsAskedFor) {
   EXPECT_THROW((void)surface_deviation(small, large, {.max_error = 0}), InvalidOption);
 }
 
+/// Pieces are cut where the closest site changes, so flat parts and parts closest to one edge take few pieces. The
+/// percentiles of boxes that are moved by half their size are then known far better than asked for.
+TEST(SurfaceDeviation, OfBoxesTakesFewPieces) {
+  const TriangleMesh box = make_box();
+  const SurfaceDeviation moved = surface_deviation(box, test::moved(box, 1, {0.5, 0, 0}));
+  EXPECT_LT(moved.pieces, 200U);
+  EXPECT_LT(moved.percentile_error, 1e-5);
+  EXPECT_NEAR(moved.percentiles[0], 0, moved.percentile_error);
+  EXPECT_NEAR(moved.largest, 0.5, moved.percentile_error);
+  // Random pairs of boxes that touch, cross or contain each other.
+  Random random(7);
+  for (int k = 0; k < 40; ++k) {
+    const auto side = [&] { return 0.2 + 0.1 * std::floor(random.uniform(0, 12)); };
+    const auto step = [&] { return 0.1 * std::floor(random.uniform(-8, 8)); };
+    const TriangleMesh first = make_box({.size = {side(), side(), side()}});
+    const TriangleMesh second = test::moved(make_box({.size = {side(), side(), side()}}), 1, {step(), step(), step()});
+    for (const SignMode sign : {SignMode::none, SignMode::automatic}) {
+      const SurfaceDeviation found = surface_deviation(first, second, {.sign = sign});
+      expect_agreement(found, sampled(first, second, 60, sign), "boxes " + std::to_string(k));
+      EXPECT_LT(found.pieces, 20'000U) << "the division must not run into its limit";
+      EXPECT_LT(found.percentile_error, 0.01) << k;
+    }
+  }
+}
+
 /// On this slope, the distance from the plane is evenly distributed from 0 to 1.
 TEST(SurfaceDeviation, OfASlope) {
   const TriangleMesh slope{{{0, 0, 0}, {2, 0, 1}, {2, 3, 1}, {0, 3, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
