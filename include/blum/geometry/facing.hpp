@@ -27,6 +27,12 @@ constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 [[nodiscard]] std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                                       std::size_t& count);
 
+/// Returns all triangles of any mesh, some of them reversed, so that those that share an edge have consistent
+/// orientations. A patch is a set of triangles that are connected through edges with exactly two triangles. In each
+/// patch, at least half of the triangles are kept. Patches without a consistent orientation stay as they are.
+/// Cost: O(triangles).
+[[nodiscard]] std::vector<Triangle> agreeing_patches(const MeshView& mesh, const SiteTable& sites);
+
 /// Triangles of a closed mesh, some of them reversed.
 struct RepairedFacing {
   std::vector<Triangle> triangles;     ///< all triangles; indices of triangles and edges are those of the mesh

@@ -41,6 +41,9 @@ Vec3d area_vector(const MeshView& mesh, const Triangle& t) {
 }
 
 void measure(const MeshView& mesh, Part& part) {
+  part.area = 0;
+  part.net_area = {};
+  part.volume = 0;
   for (const std::uint32_t t : part.triangles) {
     for (const std::uint32_t v : mesh.triangles[t]) part.box.extend(mesh.vertices[v]);
   }
@@ -194,9 +197,36 @@ class Repairer {
   }
 
   void examine() {
-    const std::vector<Part> parts = parts_of(view_, *sites_);
-    if (std::none_of(parts.begin(), parts.end(), has_negative_volume)) return;
-    (void)reverse_inward_parts(parts);
+    std::vector<Part> parts = parts_of(view_, *sites_);
+    const std::vector<Triangle> before(view_.triangles.begin(), view_.triangles.end());
+    const bool is_oriented = orient_parts(parts);
+    const bool is_any = std::any_of(parts.begin(), parts.end(), has_negative_volume) && reverse_inward_parts(parts);
+    if (is_oriented && is_any) count_shells(before, parts);
+  }
+
+  /// Gives the triangles of each part consistent orientations, if the part then surrounds a volume. Returns true if any
+  /// triangle was reversed.
+  bool orient_parts(std::vector<Part>& parts) {
+    const auto is_consistent = [](const Part& part) { return part.is_consistent; };
+    if (std::all_of(parts.begin(), parts.end(), is_consistent)) return false;
+    const std::vector<Triangle> agreeing = detail::agreeing_patches(view_, *sites_);
+    std::vector<Triangle> triangles(view_.triangles.begin(), view_.triangles.end());
+    for (Part& part : parts) {
+      if (part.is_consistent) continue;
+      measure({given_.vertices, agreeing, {}, {}}, part);
+      if (!surrounds_a_volume(part)) continue;
+      for (const std::uint32_t t : part.triangles) {
+        triangles_ += triangles[t] != agreeing[t] ? 1 : 0;
+        triangles[t] = agreeing[t];
+      }
+    }
+    if (triangles_ == 0) return false;
+    oriented_ = std::move(triangles);
+    turned_ = oriented_;
+    use(oriented_);
+    parts = parts_of(view_, *sites_);
+    facts_ = orientation(view_, *sites_);
+    return true;
   }
 
   /// Reverses the parts that face into the solid. Returns true if there are any.
@@ -227,11 +257,12 @@ class Repairer {
   void count_shells(const std::vector<Triangle>& before, const std::vector<Part>& parts) {
     triangles_ = 0;
     shells_ = 0;
+    open_parts_ = 0;
     for (const Part& part : parts) {
       const auto reversed = static_cast<std::size_t>(std::count_if(
           part.triangles.begin(), part.triangles.end(), [&](std::uint32_t t) { return before[t] != (*turned_)[t]; }));
       const bool is_most = 2 * reversed > part.triangles.size();
-      shells_ += is_most ? 1 : 0;
+      (part.is_closed ? shells_ : open_parts_) += is_most ? 1 : 0;
       triangles_ += is_most ? part.triangles.size() - reversed : reversed;
     }
   }
@@ -282,6 +313,7 @@ class Repairer {
   Orientation facts_;
   std::optional<SiteTable> own_sites_;
   std::vector<Triangle> joined_;
+  std::vector<Triangle> oriented_;  ///< with consistent orientations in each part
   bool is_joined_ = false;
   std::optional<std::vector<Triangle>> turned_;  ///< triangles of the examined mesh after reversal
   std::size_t triangles_ = 0, shells_ = 0, open_parts_ = 0;

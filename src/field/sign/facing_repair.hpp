@@ -26,7 +26,8 @@ struct FacingRepair {
 /// If the mesh is then closed, repaired_facing() decides. Shells that cross have no depth. If shells cross and one has
 /// a negative volume, all shells are examined again.
 /// If the mesh is not closed, a part consists of triangles connected through edges. If a part has a negative volume,
-/// all parts are examined. Flat sheets and single triangles are never reversed, since they surround no volume.
+/// all parts are examined. Before, the triangles of each part get consistent orientations, if that is possible and the
+/// part then surrounds a volume. Flat sheets and single triangles are never reversed, since they surround no volume.
 ///
 /// A part is examined by winding numbers of the whole mesh on both sides of places that are spread evenly over its
 /// area. Their mean is about 1/2 beside a solid and beside its voids, and -1/2 beside a solid that faces inwards.

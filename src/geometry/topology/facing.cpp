@@ -11,8 +11,9 @@ namespace blum::detail {
 namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
+constexpr std::uint32_t crowded = 0xfffffffeU;  ///< instead of the second triangle of an edge with more than two
 
-/// Walks over the edges of a closed manifold, and reverses triangles so that neighbours have consistent orientations.
+/// Walks over edges with two triangles, and reverses triangles so that neighbours have consistent orientations.
 class Reverser {
  public:
   Reverser(const MeshView& mesh, const SiteTable& sites)
@@ -25,7 +26,13 @@ class Reverser {
       if (names_vertex_twice(mesh.triangles[t])) continue;
       for (const EdgeId edge : sites.triangle_edges()[t]) {
         auto& pair = of_edge_[edge.value];
-        pair[pair[0] == nobody ? 0 : 1] = t;
+        if (pair[0] == nobody) {
+          pair[0] = t;
+        } else if (pair[1] == nobody) {
+          pair[1] = t;
+        } else {
+          pair[1] = crowded;
+        }
       }
     }
   }
@@ -39,15 +46,25 @@ class Reverser {
     return std::move(triangles_);
   }
 
+  /// Leaves the triangles of patches that cannot be oriented as they are.
+  std::vector<Triangle> agreeing_patches() {
+    for (std::uint32_t first = 0; first < facing_.size(); ++first) {
+      if (facing_[first] == 0 && !names_vertex_twice(mesh_.triangles[first])) (void)agree_with(first);
+    }
+    return std::move(triangles_);
+  }
+
  private:
   bool agree_with(std::uint32_t first) {
     std::vector<std::uint32_t> shell{first};
     facing_[first] = 1;
     int sum = 0;
+    bool is_orientable = true;
     for (std::size_t next = 0; next < shell.size(); ++next) {
       sum += facing_[shell[next]];
-      if (!visit_neighbours(shell[next], shell)) return false;
+      is_orientable = visit_neighbours(shell[next], shell) && is_orientable;
     }
+    if (!is_orientable) return false;
     for (const std::uint32_t t : shell) {
       if ((facing_[t] > 0) == (sum >= 0)) continue;
       std::swap(triangles_[t][1], triangles_[t][2]);
@@ -59,16 +76,19 @@ class Reverser {
   /// Sets the orientation of a triangle's neighbours. Returns false if a neighbour already has the opposite
   /// orientation.
   bool visit_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
+    bool agrees = true;
     for (const EdgeId edge : sites_.triangle_edges()[t]) {
       const auto& pair = of_edge_[edge.value];
+      if (pair[1] == crowded) continue;
       const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
       if (other == nobody || other == t) continue;
       const int wanted = rises(t, edge) != rises(other, edge) ? facing_[t] : -facing_[t];
-      if (facing_[other] == -wanted) return false;
-      if (facing_[other] == 0) shell.push_back(other);
+      agrees = agrees && facing_[other] != -wanted;
+      if (facing_[other] != 0) continue;
+      shell.push_back(other);
       facing_[other] = wanted;
     }
-    return true;
+    return agrees;
   }
 
   /// Returns true if a triangle traverses an edge from its smaller vertex to its larger one.
@@ -110,6 +130,10 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
 std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                         std::size_t& count) {
   return Reverser(mesh, sites).agreeing(count);
+}
+
+std::vector<Triangle> agreeing_patches(const MeshView& mesh, const SiteTable& sites) {
+  return Reverser(mesh, sites).agreeing_patches();
 }
 
 std::optional<RepairedFacing> repaired_facing(const MeshView& mesh, const SiteTable& sites, const Orientation& given,

@@ -144,6 +144,11 @@ TriangleMesh half_flipped(TriangleMesh mesh, std::uint64_t seed) {
   return mesh;
 }
 
+TriangleMesh every_other_flipped(TriangleMesh mesh, std::size_t step = 2) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += step) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  return mesh;
+}
+
 /// Meshes that are not closed, or whose shells cross. Each has the same distances as the mesh that faces outwards.
 std::vector<Turned> turned_unclosed_meshes() {
   const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
@@ -151,6 +156,7 @@ std::vector<Turned> turned_unclosed_meshes() {
   TriangleMesh sheet;
   sheet.vertices = {{2.5, 0, 0}, {2.5, 1, 0}, {2.5, 0, 1}};
   sheet.triangles = {{0, 1, 2}};
+  const TriangleMesh other = box_between({2.2, 0, 0}, {2.9, 1, 1});
   TriangleMesh lidless = box;
   lidless.triangles.resize(10);
   const TriangleMesh sphere = make_sphere({.frequency = 4});
@@ -159,7 +165,17 @@ std::vector<Turned> turned_unclosed_meshes() {
   TriangleMesh doubled = box;
   doubled.triangles.insert(doubled.triangles.end(), box.triangles.begin(), box.triangles.end());
   const TriangleMesh crossing = both(box, across);
+  TriangleMesh two_holes = holed;
+  two_holes.triangles.erase(two_holes.triangles.begin() + 7);
   return {{"WithoutLid", lidless, reversed(lidless), "1 part was reversed"},
+          {"HalfFlippedWithoutLid", lidless, every_other_flipped(lidless), "5 triangles were reversed"},
+          {"MostlyFlippedWithoutLid", lidless, every_other_flipped(reversed(lidless), 3),
+           "4 triangles and 1 part were reversed"},
+          {"HalfFlippedWithAHole", holed, half_flipped(holed, 4), ""},
+          {"HalfFlippedWithTwoHoles", two_holes, half_flipped(two_holes, 5), ""},
+          {"HalfFlippedSoupWithAHole", soup_of(holed), soup_of(half_flipped(holed, 6)), ""},
+          {"HalfFlippedBesideAnotherWithoutLid", both(lidless, other), both(every_other_flipped(lidless), other),
+           "5 triangles were reversed"},
           {"SphereWithAHole", holed, reversed(holed), "1 part was reversed"},
           {"BoxAndSheet", both(box, sheet), both(reversed(box), sheet), "1 shell was reversed"},
           {"Doubled", doubled, reversed(doubled), "1 part was reversed"},
@@ -192,6 +208,34 @@ TEST(SignWarnings, UnclosedAndCrossingMeshesGetTheirInside) {
     EXPECT_GT(inside, 0U);
     const ClosestPointQuery as_given(turned.wrong, {.sign = SignMode::winding});
     EXPECT_FALSE(as_given.warnings().empty());
+  }
+}
+
+/// A Moebius strip has no consistent orientation. Its triangles stay as they are, with a warning.
+TEST(SignWarnings, OneSidedSheetsAreNotReversed) {
+  TriangleMesh strip;
+  constexpr std::uint32_t steps = 12;
+  for (std::uint32_t k = 0; k < steps; ++k) {
+    const double turn = 2 * 3.141592653589793 * k / steps;
+    for (const double side : {-0.4, 0.4}) {
+      const double radius = 1 + side * std::cos(turn / 2);
+      strip.vertices.push_back({radius * std::cos(turn), radius * std::sin(turn), side * std::sin(turn / 2)});
+    }
+    const bool is_last = k + 1 == steps;
+    const std::uint32_t a = 2 * k;
+    const std::uint32_t next = is_last ? 1 : a + 2;
+    const std::uint32_t after = is_last ? 0 : a + 3;
+    strip.triangles.push_back({a, next, a + 1});
+    strip.triangles.push_back({a + 1, next, after});
+  }
+  const ClosestPointQuery automatic(strip);
+  const ClosestPointQuery as_given(strip, {.sign = SignMode::winding});
+  ASSERT_EQ(automatic.warnings().size(), 1U);
+  EXPECT_NE(automatic.warnings()[0].text.find("face different ways"), std::string::npos);
+  Random random(3);
+  for (int k = 0; k < 100; ++k) {
+    const Vec3d q = random.in_cube();
+    ASSERT_EQ(automatic.nearest(q).distance, as_given.nearest(q).distance);
   }
 }
 
