@@ -17,6 +17,10 @@
 namespace blum::sign {
 namespace {
 
+/// Share of the largest coordinate: positions that differ by rounding to single precision are at most this far apart.
+/// Along each axis, this allows for two units in the last place.
+constexpr double single_rounding = 4.2e-7;
+
 /// Triangles that are connected through edges.
 struct Part {
   std::vector<std::uint32_t> triangles;
@@ -160,17 +164,31 @@ class Repairer {
   }
 
  private:
-  /// Gives vertices at the same position the same index.
+  /// Gives vertices at the same position the same index. If the mesh still has a boundary, positions that differ only
+  /// by rounding to single precision count as the same, too.
   void join_positions() {
-    const std::vector<std::uint32_t> cluster = weld_clusters(given_.vertices);
+    join(0);
+    if (facts_.boundary_edges > 0) join(single_rounding * bounds(given_).largest_coordinate());
+  }
+
+  /// Joins vertices that are at most `tolerance` apart, if the mesh then has fewer boundary edges.
+  void join(double tolerance) {
+    const std::vector<std::uint32_t> cluster = weld_clusters(given_.vertices, tolerance);
     bool is_same = true;
     for (std::uint32_t v = 0; v < cluster.size(); ++v) is_same = is_same && cluster[v] == v;
     if (is_same) return;
+    const std::vector<Triangle> before = joined_;
+    const Orientation facts = facts_;
     joined_.assign(given_.triangles.begin(), given_.triangles.end());
     for (Triangle& t : joined_) t = {cluster[t[0]], cluster[t[1]], cluster[t[2]]};
     use(joined_);
     facts_ = orientation(view_, *sites_);
     is_joined_ = true;
+    if (tolerance == 0 || facts_.boundary_edges < facts.boundary_edges) return;
+    joined_ = before;
+    is_joined_ = !before.empty();
+    use(is_joined_ ? std::span<const Triangle>(joined_) : given_.triangles);
+    facts_ = facts;
   }
 
   void use(std::span<const Triangle> triangles) {

@@ -22,7 +22,9 @@ struct FacingRepair {
 
 /// Finds the parts of a mesh that face into the solid.
 ///
-/// Vertices at the same position count as one. So a soup of triangles without common vertices counts as a surface.
+/// Vertices at the same position count as one. So a soup of triangles without common vertices counts as a surface. If
+/// the mesh still has a boundary, positions that differ by rounding to single precision count as the same. This holds
+/// only if it leaves fewer boundary edges.
 /// If the mesh is then closed, repaired_facing() decides. Shells that cross have no depth. If shells cross and one has
 /// a negative volume, all shells are examined again.
 /// If the mesh is not closed, a part consists of triangles connected through edges. If a part has a negative volume,

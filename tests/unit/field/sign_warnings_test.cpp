@@ -211,6 +211,37 @@ TEST(SignWarnings, UnclosedAndCrossingMeshesGetTheirInside) {
   }
 }
 
+/// Corners of soups from STL files may differ in the last bit of single precision. Such soups are examined as if their
+/// corners were joined. Their positions, and so their distances, stay the same.
+TEST(SignWarnings, SoupsWithRoundedCornersGetTheirInside) {
+  for (const Vec3d& at : {Vec3d{0, 0, 0}, Vec3d{700, -300, 20}}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const TriangleMesh sphere = test::moved(make_sphere({.frequency = 4}), 1, at);
+      const TriangleMesh soup = soup_of(sphere);
+      for (const TriangleMesh& turned : {soup_of(reversed(sphere)), soup_of(half_flipped(sphere, seed))}) {
+        TriangleMesh rounded = turned;
+        Random random(seed);
+        for (Vec3d& v : rounded.vertices) {
+          for (double* x : {&v.x, &v.y, &v.z}) {
+            const auto single = static_cast<float>(*x);
+            *x = std::nextafterf(single, random.in_cube().x < 0.5 ? -1e9F : 1e9F);
+          }
+        }
+        const ClosestPointQuery right(soup);
+        const ClosestPointQuery found(rounded);
+        ASSERT_EQ(found.warnings().size(), 1U);
+        EXPECT_EQ(found.warnings()[0].code, WarningCode::facing);
+        for (int k = 0; k < 200; ++k) {
+          const Vec3d q = at + random.in_cube() * 4.0 - Vec3d{2, 2, 2};
+          const double distance = right.nearest(q).distance;
+          if (std::abs(distance) < 1e-3) continue;
+          ASSERT_NEAR(found.nearest(q).distance, distance, 1e-3);
+        }
+      }
+    }
+  }
+}
+
 /// A Moebius strip has no consistent orientation. Its triangles stay as they are, with a warning.
 TEST(SignWarnings, OneSidedSheetsAreNotReversed) {
   TriangleMesh strip;
