@@ -487,16 +487,13 @@ class FieldSolver(Rebuilt):
         self._device = device_name(device)
         self._grid = grid
         self._reuse = bool(reuse)
-        self._solver = self._made()
+        _ = self._solver  # so that wrong options are rejected now
         self._busy = threading.Lock()
         self._owner: int | None = None  # Thread that computes.
 
-    def _made(self) -> _core.FieldSolver:
-        return _core.FieldSolver(self._grid._spec, self._options, self._device)
-
     @cached_property
     def _solver(self) -> _core.FieldSolver:
-        return self._made()
+        return _core.FieldSolver(self._grid._spec, self._options, self._device)
 
     def __getstate__(self) -> dict[str, Any]:
         return {**super().__getstate__(), "_busy": None, "_owner": None}
@@ -618,4 +615,6 @@ def read_field(path: PathLike) -> Field:
     ...     blum.read_field(path).distance.shape
     (8, 8, 8)
     """
-    return Field._of(_core.read_field(existing_file(path)), None, source_name(path))
+    core = _core.read_field(existing_file(path))
+    warn_all(core.warnings)
+    return Field._of(core, None, source_name(path))

@@ -205,7 +205,7 @@ def test_fields_of_images_without_sites(tmp_path, options):
     report = run_json("field", tmp_path / "a.npy", *options, "--no-sites", "-o", tmp_path / "half.nrrd")
     ends = ["-label1", "-label2"] if "--label" in options else [""]
     for end in ends:
-        distances = [(tmp_path / f"{name}{end}.nrrd").read_bytes()[-4 * values.size:] for name in ("full", "half")]
+        distances = [(tmp_path / f"{name}{end}.nrrd").read_bytes()[-4 * values.size :] for name in ("full", "half")]
         assert distances[0] == distances[1] and len(set(np.frombuffer(distances[0], np.float32))) > 2
         assert (tmp_path / f"full{end}.site.nrrd").exists() and not (tmp_path / f"half{end}.site.nrrd").exists()
     assert all(field["sites"] is None for field in report["fields"])
@@ -215,3 +215,19 @@ def test_fields_of_images_without_sites(tmp_path, options):
     wanted = [str(tmp_path / f"full{end}.site.nrrd") for end in ends]
     assert removed == (wanted[0] if len(wanted) == 1 else wanted)
     assert not any((tmp_path / f"full{end}.site.nrrd").exists() for end in ends)
+
+
+def test_fields_warn_of_nrrd_frames_that_disagree(tmp_path):
+    path, values = tmp_path / "a.nrrd", (np.linalg.norm(np.indices((9, 9, 9)) - 4.0, axis=0) - 2.6).astype(np.float32)
+    frames = {"spacings: 1 2.5 1": True, "spacings: 1 1 1": False}
+    for frame, warns in frames.items():
+        path.write_bytes(
+            b"NRRD0005\ntype: float\ndimension: 3\nsizes: 9 9 9\nencoding: raw\nendian: little\nspace dimension: 3\n"
+            b"space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nsign_rule:=winding\n"
+            + frame.encode()
+            + b"\n\n"
+            + values.tobytes()
+        )
+        for command in (["info"], ["surface", "-o", tmp_path / "s.ply"], ["slice", "-o", tmp_path / "s.png"]):
+            _, err = run(command[0], path, *command[1:], warns=warns)
+            assert ("space directions and spacings disagree at axis 1: 1 and 2.5" in err) == warns, command

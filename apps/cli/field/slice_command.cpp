@@ -106,6 +106,7 @@ void run(const Arguments& a) {
     write_png(output, picture);
   }
   if (!a.quiet) {
+    warn(field.warnings);
     print("wrote " + output.string() + ": " + std::to_string(picture.width()) + " x " +
           std::to_string(picture.height()) + " pixels, " + slice.place + "\n");
   }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -130,7 +131,8 @@ void run_level(const Arguments& a) {
   write_mesh(output, surface);
   progress.clear();
 
-  std::vector<Warning> warnings = level_warnings(field, level, context);
+  std::vector<Warning> warnings = field.warnings;
+  for (Warning& warning : level_warnings(field, level, context)) warnings.push_back(std::move(warning));
   if (!reason.empty()) warnings.emplace_back(WarningCode::nothing_found, reason);
   const double write_seconds = watch.lap();
   const Json json = answer_json(

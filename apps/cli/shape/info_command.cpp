@@ -350,7 +350,9 @@ void run_field(const Arguments& a) {
   table.add("sites", has_sites ? count_text(s.all.sites) + " distinct (" + std::string(to_string(field.site_ids)) +
                                      "), " + plural(s.siteless_nodes, "node", "nodes") + " without"
                                : "none in the file");
+  json["warnings"] = to_json(field.warnings);
   report(a.report, answer_json("info", json), table);
+  if (!a.report.quiet) warn(field.warnings);
 }
 
 // ---- Devices ----

@@ -119,6 +119,7 @@ std::string range_text(const Json& range) {
 
 Json field_item(SceneBlob& blob, const fs::path& path) {
   const Field field = read_field(path);
+  warn(field.warnings);
   check_size(field.distance.size(), most_nodes, "nodes", path, "make a coarser field");
   const bool is_of_voxels = field.site_ids == SiteIds::voxels;
   Json item = {{"kind", "field"}, {"units", is_of_voxels ? "units of the spacing" : "mesh units"}};

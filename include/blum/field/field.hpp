@@ -153,7 +153,8 @@ struct Field {
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;  ///< reason for sign_rule, one sentence
   /// Warnings about the signs. WarningCode::facing: parts of the mesh face the wrong way. WarningCode::nothing_inside:
-  /// no node is inside the mesh. At most one. Empty for fields of images and of balls, and for fields from files.
+  /// no node is inside the mesh. At most one. Empty for fields of images and of balls. Fields from NRRD files have the
+  /// warnings about frames that disagree instead, as in ImageFile.
   std::vector<Warning> warnings = {};
   Device device;                   ///< device that computed the field; never `automatic`
   std::string device_reason = {};  ///< reason in one sentence if `automatic` was requested and the CPU was chosen; else

@@ -133,6 +133,7 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
   check_holds_distances(header, source.name());
   Field field;
   field.grid = header.grid;
+  field.warnings = header.warnings;
   if (header.data_file.empty()) {
     field.distance = nrrd_distances(source, header);
   } else if (path.empty()) {
