@@ -167,6 +167,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns true if the extension of a file is that of a format. Its first bytes then need not identify it.
+bool has_known_name(const fs::path& path) {
+  return MeshFormat::by_name(path) || FieldFormat::by_name(path) || ImageFormat::by_name(path);
+}
+
 /// Returns true if a NRRD header declares floating-point values.
 bool holds_floats(std::string_view head) {
   std::istringstream lines{std::string(head.substr(0, head.find("\n\n")))};
@@ -178,6 +183,11 @@ bool holds_floats(std::string_view head) {
     return type == "float" || type == "double";
   }
   return false;
+}
+
+std::optional<ComplexFormat> complex_format(const fs::path& path, std::string_view head) {
+  const auto format = ComplexFormat::by_name(path);
+  return format || has_known_name(path) ? format : ComplexFormat::by_head(head);
 }
 
 std::optional<ImageFormat> image_format(const fs::path& path, std::string_view head) {
@@ -207,6 +217,7 @@ FileContent content_of(const fs::path& path) {
   if (holds(ComplexFormat::by_name(path), path, head)) return FileContent::complex;
   if (holds(FieldFormat::by_name(path), path, head)) return FileContent::field;
   if (ImageFormat::by_name(path)) return FileContent::image;
+  if (holds(ComplexFormat::by_head(head), path, head)) return FileContent::complex;
   if (holds(FieldFormat::by_head(head), path, head)) return FileContent::field;
   if (ImageFormat::by_head(head)) return FileContent::image;
   if (mesh_format_by_content(path, head)) return FileContent::mesh;
@@ -221,7 +232,8 @@ FileContent content_of(const fs::path& path) {
 }
 
 bool holds_complex(const fs::path& path) {
-  return holds(ComplexFormat::by_name(path), path, read_file_head(path));
+  const std::string head = read_file_head(path);
+  return holds(complex_format(path, head), path, head);
 }
 
 bool may_hold_field(const fs::path& path) {

@@ -102,7 +102,8 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 [[nodiscard]] ComplexFile read_complex(const std::filesystem::path& path);
 
 /// Return true if files with the extension of a path are read as complexes. The files must also be able to hold columns
-/// (may_hold_columns()), or further complexes (may_hold_further()).
+/// (may_hold_columns()), or further complexes (may_hold_further()). If a file's extension is not known, its first bytes
+/// decide about columns.
 [[nodiscard]] bool may_hold_columns(const std::filesystem::path& path);
 [[nodiscard]] bool may_hold_further(const std::filesystem::path& path);
 

@@ -94,4 +94,9 @@ class ZipWriter {
 /// Returns the CRC-32 of many bytes. All threads of the context compute it together.
 [[nodiscard]] std::uint32_t parallel_crc32(std::span<const std::byte> bytes, const Context& context);
 
+/// Returns true if a file with these first bytes is a ZIP archive, for example an .npz file.
+[[nodiscard]] inline bool begins_as_zip(std::string_view head) {
+  return head.starts_with("PK\x03\x04");
+}
+
 }  // namespace blum::volume_io

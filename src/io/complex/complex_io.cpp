@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
@@ -107,6 +108,14 @@ ComplexFile checked(const std::string& name, Read read) {
   }
 }
 
+/// Returns the format of a file by its name, or by its first bytes if the name has no known extension.
+std::optional<ComplexFormat> format_of_file(const std::filesystem::path& path) {
+  std::optional<ComplexFormat> format = ComplexFormat::by_name(path);
+  std::error_code ignored;
+  if (!format && std::filesystem::exists(path, ignored)) format = ComplexFormat::by_head(read_file_head(path));
+  return format;
+}
+
 }  // namespace
 
 void write_complex(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
@@ -120,7 +129,9 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 }
 
 ComplexFile read_complex(const std::filesystem::path& path) {
-  const formats::ComplexCode& code = formats::code_of(ComplexFormat::of(path));
+  std::optional<ComplexFormat> format = format_of_file(path);
+  if (!format) format = ComplexFormat::of(path);  // before the file is opened, for its error
+  const formats::ComplexCode& code = formats::code_of(*format);
   return checked(path.string(), [&] {
     if (code.read != nullptr) return code.read(volume_io::FileSource(path));
     const FileBytes content = read_whole_file(path);
@@ -129,7 +140,7 @@ ComplexFile read_complex(const std::filesystem::path& path) {
 }
 
 bool may_hold_columns(const std::filesystem::path& path) {
-  const auto format = ComplexFormat::by_name(path);
+  const auto format = format_of_file(path);
   return format && formats::code_of(*format).holds_columns;
 }
 

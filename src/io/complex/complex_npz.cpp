@@ -12,6 +12,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "io/archive/numpy.hpp"
+#include "io/archive/zip.hpp"
 #include "io/complex/complex_files.hpp"
 #include "io/format_table.hpp"
 #include "io/text/json.hpp"
@@ -271,7 +272,10 @@ ComplexFile read_npz(const volume_io::ByteSource& source) {
 
 namespace blum::formats {
 
-constinit const ComplexCode complex_npz{
-    complex_files::read_npz, nullptr, complex_files::write_npz, {.holds_this = complex_files::holds_complex}, true};
+constinit const ComplexCode complex_npz{complex_files::read_npz,
+                                        nullptr,
+                                        complex_files::write_npz,
+                                        {volume_io::begins_as_zip, complex_files::holds_complex},
+                                        true};
 
 }  // namespace blum::formats

@@ -259,11 +259,20 @@ void write_vtp(const std::filesystem::path& path, const Complex& complex, const 
   file.commit();
 }
 
+namespace {
+
+bool begins_as_vtp(std::string_view head) {
+  return volume_io::begins_as_vtk(head, "PolyData");
+}
+
+}  // namespace
+
 }  // namespace blum::complex_files
 
 namespace blum::formats {
 
-constinit const ComplexCode complex_vtp{complex_files::read_vtp, nullptr, complex_files::write_vtp};
+constinit const ComplexCode complex_vtp{
+    complex_files::read_vtp, nullptr, complex_files::write_vtp, {complex_files::begins_as_vtp}};
 
 }  // namespace blum::formats
 

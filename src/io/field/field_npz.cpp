@@ -7,6 +7,7 @@
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "io/archive/numpy.hpp"
+#include "io/archive/zip.hpp"
 #include "io/field/field_files.hpp"
 #include "io/format_table.hpp"
 #include "io/image/image_files.hpp"
@@ -164,6 +165,6 @@ namespace blum::formats {
 
 using namespace volume_io;
 
-constinit const FieldCode field_npz{read_field_npz, write_field_npz};
+constinit const FieldCode field_npz{read_field_npz, write_field_npz, {begins_as_zip}};
 
 }  // namespace blum::formats

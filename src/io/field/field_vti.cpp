@@ -81,13 +81,21 @@ void write_field_vti(const std::filesystem::path& path, const Field& field, cons
   file.commit();
 }
 
+namespace {
+
+bool begins_as_vti(std::string_view head) {
+  return begins_as_vtk(head, "ImageData");
+}
+
+}  // namespace
+
 }  // namespace blum::volume_io
 
 namespace blum::formats {
 
 using namespace volume_io;
 
-constinit const FieldCode field_vti{read_field_vti, write_field_vti};
+constinit const FieldCode field_vti{read_field_vti, write_field_vti, {begins_as_vti}};
 
 }  // namespace blum::formats
 

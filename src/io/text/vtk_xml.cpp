@@ -189,4 +189,11 @@ std::string vtk_appended_array(ScalarType type, std::string_view name, std::uint
          std::to_string(offset) + "\"/>\n";
 }
 
+bool begins_as_vtk(std::string_view head, std::string_view type) {
+  const std::size_t start = head.find("<VTKFile");
+  if (start == std::string_view::npos) return false;
+  const std::string_view tag = head.substr(start, head.find('>', start) - start);
+  return tag.find("type=\"" + std::string(type) + "\"") != std::string_view::npos;
+}
+
 }  // namespace blum::volume_io

@@ -94,4 +94,7 @@ struct VtkArray {
 [[nodiscard]] std::string vtk_appended_array(ScalarType type, std::string_view name, std::uint64_t components,
                                              std::uint64_t offset);
 
+/// Returns true if a file with these first bytes is a VTK XML file of a type, for example "PolyData".
+[[nodiscard]] bool begins_as_vtk(std::string_view head, std::string_view type);
+
 }  // namespace blum::volume_io
