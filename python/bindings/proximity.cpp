@@ -95,6 +95,7 @@ void bind_proximity(nb::module_& m) {
             view);
       },
       nb::arg("mesh"), nb::arg("end").noconvert(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def("start_warnings", [](std::size_t pairs) { return result_of(start_warnings(pairs)); }, nb::arg("pairs"));
   m.def(
       "first_contact",
       [](const MeshArrays& mesh, const PointsIn& end, const MeshArrays* other, const std::optional<PointsIn>& other_end,

@@ -13,7 +13,7 @@ from ._errors import InvalidMesh
 from ._mesh import MeshLike, MeshOrVertices, as_mesh, end_vertices
 from ._options import takes
 from ._progress import Progress, reporting
-from ._proximity_results import FirstContact, earliest_of
+from ._proximity_results import FirstContact, earliest_of, warn_of_start
 from ._structs import ImpactOptions
 
 __all__ = [
@@ -67,7 +67,8 @@ def continuous_collisions(
     """Returns all pairs of a vertex and a triangle, and of two edges, of a mesh that meet while its vertices move.
 
     Vertices move along straight lines. The set of pairs is exact for the given coordinates. Pairs that share a vertex
-    are left out. Vertices that coincide at both times count as one vertex.
+    are left out. Vertices that coincide at both times count as one vertex. A warning reports pairs that meet at the
+    start, because their times are 0.
 
     Parameters
     ----------
@@ -96,7 +97,9 @@ def continuous_collisions(
     last = end_vertices(end, "end", start.triangles)
     with reporting(progress) as report:
         found = _core.continuous_collisions(start._arrays, last, dict(options), integer(threads, "threads"), report)
-    return ContinuousCollisions(*found)
+    out = ContinuousCollisions(*found)
+    warn_of_start(out.vertex_face_time, out.edge_edge_time)
+    return out
 
 
 @takes("ImpactOptions")

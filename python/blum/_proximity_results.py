@@ -8,8 +8,10 @@ from typing import Any, overload
 
 import numpy as np
 
+from . import _core
 from ._arguments import FloatArray, IntArray, Integer, integer
 from ._methods import Shown
+from ._warn import warn_all
 
 __all__ = ["FirstContact", "Penetration", "PrimitivePair", "ProximityPairs", "SceneCollisions"]
 
@@ -18,6 +20,11 @@ def earliest_of(*times: FloatArray) -> float | None:
     """Returns the smallest of some times. None without times."""
     every = np.concatenate(times)
     return float(every.min()) if len(every) else None
+
+
+def warn_of_start(*times: FloatArray) -> None:
+    """Warns if pairs meet at the start of a motion."""
+    warn_all(_core.start_warnings(sum(int(np.count_nonzero(one == 0)) for one in times)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -27,6 +27,7 @@ from ._proximity_results import (
     ProximityPairs,
     SceneCollisions,
     penetration_of,
+    warn_of_start,
 )
 from ._rigid import as_place, as_places
 from ._scene_copies import SceneObject, restored_scene
@@ -605,7 +606,8 @@ class ProximityScene:
     ) -> SceneCollisions:
         """Returns all pairs of a vertex and a face, and of two edges, of compared objects that meet while objects move.
 
-        Vertices move along straight lines. The scene is not changed. Objects without a motion rest.
+        Vertices move along straight lines. The scene is not changed. Objects without a motion rest. A warning reports
+        pairs that meet at the start, because their times are 0.
 
         Parameters
         ----------
@@ -630,7 +632,9 @@ class ProximityScene:
         rows = [_motion(which, end) for which, end in _motions_of(motions)]
         count = integer(threads, "threads")
         with self._alone(progress) as report:
-            return SceneCollisions(*self._scene.continuous(rows, dict(options), count, report))
+            found = SceneCollisions(*self._scene.continuous(rows, dict(options), count, report))
+        warn_of_start(found.vertex_face_time, found.edge_edge_time)
+        return found
 
     @takes("ImpactOptions")
     def first_contact(

@@ -11,6 +11,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/proximity/continuous_collisions.hpp"
@@ -342,6 +343,21 @@ std::optional<double> ContinuousCollisions::earliest() const {
   for (const VertexFaceCollision& one : vertex_face) look_at(one.time);
   for (const EdgeEdgeCollision& one : edge_edge) look_at(one.time);
   return first;
+}
+
+std::vector<Warning> start_warnings(std::size_t pairs) {
+  if (pairs == 0) return {};
+  return {{WarningCode::meet_at_start, plural(pairs, "pair meets", "pairs meet") +
+                                           " already at the start of the motion, so " +
+                                           (pairs == 1 ? "its time is 0" : "their times are 0")}};
+}
+
+std::vector<Warning> start_warnings(const ContinuousCollisions& found) {
+  const auto at_start = [](const auto& pairs) {
+    return static_cast<std::size_t>(
+        std::count_if(pairs.begin(), pairs.end(), [](const auto& one) { return one.time == 0; }));
+  };
+  return start_warnings(at_start(found.vertex_face) + at_start(found.edge_edge));
 }
 
 ContinuousCollisions continuous_collisions(const MeshView& mesh, std::span<const Vec3d> end,

@@ -17,6 +17,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/proximity/continuous_collisions.hpp"
 #include "blum/proximity/first_contact.hpp"
 #include "blum/proximity/motion.hpp"
 #include "proximity/first_search.hpp"
@@ -229,6 +230,19 @@ std::optional<double> SceneCollisions::earliest() const {
     if (time && (!first || *time < *first)) first = time;
   }
   return first;
+}
+
+std::vector<Warning> start_warnings(const SceneCollisions& found) {
+  std::size_t count = 0;
+  const auto add = [&](const auto& pairs) {
+    for (const auto& one : pairs) count += one.time == 0 ? 1 : 0;
+  };
+  for (const ObjectCollisions& pair : found.objects) {
+    add(pair.vertex_face);
+    add(pair.face_vertex);
+    add(pair.edge_edge);
+  }
+  return start_warnings(count);
 }
 
 void check(const SceneOptions& options) {

@@ -83,7 +83,9 @@ def read_csv(path):
 
 
 def read_json(path):
-    return {name: value if name == "metadata" else np.array(value) for name, value in json.loads(path.read_text()).items()}
+    return {
+        name: value if name == "metadata" else np.array(value) for name, value in json.loads(path.read_text()).items()
+    }
 
 
 READERS = {"npz": read_npz, "csv": read_csv, "json": read_json}
@@ -98,7 +100,9 @@ SCENES = [
 
 def options_of(options):
     named = {"compare_self": "--self", "min_separation": "--min-separation", "tolerance": "--tolerance"}
-    return [text for name, value in options.items() for text in ([named[name]] if value is True else [named[name], value])]
+    return [
+        text for name, value in options.items() for text in ([named[name]] if value is True else [named[name], value])
+    ]
 
 
 @pytest.mark.parametrize(("start", "end", "options"), SCENES)
@@ -226,7 +230,7 @@ def test_text_reports_objects_pairs_and_first_time(folder, tmp_path):
 def test_text_lists_only_the_first_pairs_of_objects(folder, tmp_path):
     files = [folder / "ball1.ply"] + [folder / "plate.ply"] * 7
     ends = [folder / "ball2.ply"] + [folder / "plate.ply"] * 7
-    out = run("proximity", "continuous", *files, "--to", *ends, "-o", tmp_path / "p.csv")[0]
+    out = run("proximity", "continuous", *files, "--to", *ends, "-o", tmp_path / "p.csv", warns=True)[0]
     assert "22 pairs of objects more: --json FILE lists all" in out  # resting plates in one place meet, too
 
 
@@ -292,3 +296,26 @@ def test_ends_that_do_not_match_are_rejected(folder, tmp_path):
         error = run("proximity", query, *two, fallen, plate, status=2)[1]
         assert "there is no option --to" in error
     assert names(tmp_path) == ["far.obj", "other.ply"]
+
+
+def test_pairs_that_meet_at_the_start_are_warned_of(folder, tmp_path):
+    box = blum.generate("box")
+    for name, step in {"a.ply": 0, "b.ply": 0.5, "c.ply": 5}.items():
+        moved(box, step, 0, 0).write(tmp_path / name)
+    pair = blum.Mesh(
+        np.concatenate([box.vertices, box.vertices + np.array([0.5, 0, 0])]),
+        np.concatenate([box.triangles, box.triangles + 8]),
+    )
+    for name, step in {"1.ply": 0, "2.ply": 1}.items():
+        moved(pair, step, 0, 0).write(tmp_path / name)
+    a, b, c, first, last = (tmp_path / name for name in ("a.ply", "b.ply", "c.ply", "1.ply", "2.ply"))
+    for arguments in (
+        ["proximity", "continuous", a, b, "--to", a, c],
+        ["proximity", "continuous", first, last, "--self"],
+        ["proximity", "continuous", first, last, first, "--frames", "--self"],
+    ):
+        _, err = run(*arguments, warns=True)
+        assert "already at the start of the motion, so their times are 0" in err, arguments
+        facts = run_json(*arguments, warns=True)
+        assert [warning["code"] for warning in facts["warnings"]] == ["meet-at-start"]
+    assert "warning" not in run("proximity", "continuous", a, c, "--to", a, c)[1]

@@ -4,6 +4,7 @@ Every kind of array gives the same answers, and wrong arguments are rejected by 
 
 import dataclasses
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -529,6 +530,23 @@ def test_penetrations_of_all_solids_take_the_options_of_pairs():
             call(depth=1)
     empty = blum.ProximityScene()
     assert empty.penetrations() == [] and len(empty.signed_separations()) == 0
+
+
+def test_pairs_that_meet_at_the_start_are_warned_of():
+    scene, box = two_boxes([0.5, 0, 0])
+    with pytest.warns(blum.InputWarning, match="already at the start of the motion, so their times are 0") as caught:
+        found = scene.continuous({1: box.vertices + np.array([3, 0, 0])})
+    assert caught[0].message.code == "meet-at-start" and found.earliest == 0
+    at_start = np.count_nonzero(found.vertex_face_time == 0) + np.count_nonzero(found.edge_edge_time == 0)
+    assert str(caught[0].message).startswith(f"{at_start} pairs meet")
+    both = np.concatenate([box.vertices, box.vertices + np.array([0.5, 0, 0])])
+    triangles = np.concatenate([box.triangles, box.triangles + 8])
+    with pytest.warns(blum.InputWarning, match=f"{at_start} pairs meet already"):
+        blum.continuous_collisions((both, triangles), both)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene, _ = two_boxes([2, 0, 0])
+        assert scene.continuous({1: box.vertices - np.array([1, 0, 0])}).earliest > 0
 
 
 def test_continuous_collisions_of_objects():

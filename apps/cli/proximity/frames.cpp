@@ -37,6 +37,7 @@ struct Frame {
   std::optional<double> earliest;
   std::string skipped;  ///< reason why the step to the next frame was skipped; empty if it was not skipped
   std::vector<PhaseTime> phases;
+  std::vector<Warning> warnings;
 
   void add(Json pair, std::size_t limit) {
     if (count++ < limit) pairs.push_back(std::move(pair));
@@ -70,6 +71,7 @@ void add_result(const SceneCollisions& found, const TriangleMesh& from, std::spa
     out.add(std::move(pair), limit);
   };
   out.earliest = found.earliest();
+  out.warnings = start_warnings(found);
   for (const ObjectCollisions& pair : found.objects) {
     for (const auto& one : pair.vertex_face) add(one.vertex, one.time);
     for (const auto& one : pair.edge_edge) add(one.first[0], one.time);
@@ -178,8 +180,10 @@ struct Answer {
   double first_time = 0;
   std::size_t most = 0;  ///< largest number of pairs in a frame
   std::vector<PhaseTime> phases;
+  std::vector<Warning> warnings;  ///< those of the first frame: pairs that meet later may still meet in the next frames
 
   void add(std::size_t k, Frame frame) {
+    if (k == 0) warnings = std::move(frame.warnings);
     pairs += frame.count;
     most = std::max(most, frame.count);
     counts.push_back(frame.count);
@@ -236,6 +240,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer, const PhaseSumma
   facts["total_seconds"] = spent.total;
   facts["peak_memory_bytes"] = peak_memory();
   facts["threads"] = threads;
+  facts["warnings"] = to_json(answer.warnings);
   facts["limit"] = limit_json(a);
   facts["outputs"] = outputs_json(a);
   return answer_json("proximity", facts);
@@ -277,6 +282,7 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query) {
   progress.clear();
   const PhaseSummary spent = summarize(answer.phases);
   report(a.report, json_of(a, answer, spent, thread_count(context)), table_of(a, answer, spent));
+  if (!a.report.quiet) warn(answer.warnings);
 }
 
 }  // namespace blum::cli

@@ -158,6 +158,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"total_seconds", answer.spent.total},
                                    {"peak_memory_bytes", peak_memory()},
                                    {"threads", answer.threads},
+                                   {"warnings", to_json(start_warnings(answer.found))},
                                    {"limit", limit_json(a)},
                                    {"outputs", outputs_json(a)}});
 }
@@ -244,6 +245,7 @@ void run_moving_scene(const ProximityArguments& a) {
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);
   report(a.report, json_of(a, answer), table_of(a, answer));
+  if (!a.report.quiet) warn(start_warnings(answer.found));
 }
 
 }  // namespace blum::cli

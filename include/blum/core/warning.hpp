@@ -32,6 +32,7 @@ enum class WarningCode : std::uint8_t {
   rounded,             ///< a file contains rounded numbers, so guarantees for the exact numbers may not hold
   not_extended,        ///< rims of an axis were not extended
   coarse_grid,         ///< a grid is too coarse for the shape
+  meet_at_start,       ///< features meet at the start of a motion, so the times of their contacts are 0
 };
 
 template <>
@@ -56,6 +57,7 @@ struct Description<WarningCode> {
       NamedValue{WarningCode::rounded, "rounded"},
       NamedValue{WarningCode::not_extended, "not-extended"},
       NamedValue{WarningCode::coarse_grid, "coarse-grid"},
+      NamedValue{WarningCode::meet_at_start, "meet-at-start"},
   };
 };
 

@@ -10,6 +10,7 @@
 #include "blum/core/context.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/proximity/impact.hpp"
 
@@ -61,5 +62,12 @@ struct ContinuousCollisions {
 [[nodiscard]] ContinuousCollisions continuous_collisions(const MeshView& mesh, std::span<const Vec3d> end,
                                                          const ImpactOptions& options = {},
                                                          const Context& context = {});
+
+/// Returns a warning if pairs meet at the start of a motion, or an empty list. Their times are 0, whether they then
+/// move apart or deeper into each other.
+/// @param pairs  number of pairs with the time 0.
+[[nodiscard]] std::vector<Warning> start_warnings(std::size_t pairs);
+/// Returns the same for the pairs of a result.
+[[nodiscard]] std::vector<Warning> start_warnings(const ContinuousCollisions& found);
 
 }  // namespace blum

@@ -9,6 +9,7 @@
 #include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/rigid_transform.hpp"
 #include "blum/proximity/continuous_collisions.hpp"
 
@@ -49,5 +50,8 @@ struct SceneCollisions {
   /// Returns the earliest time of impact; nullopt if nothing collides.
   [[nodiscard]] std::optional<double> earliest() const;
 };
+
+/// Returns a warning if pairs meet at the start of the motion: see start_warnings(std::size_t).
+[[nodiscard]] std::vector<Warning> start_warnings(const SceneCollisions& found);
 
 }  // namespace blum

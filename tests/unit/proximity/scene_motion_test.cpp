@@ -135,5 +135,20 @@ TEST(SceneInMotion, MatchesASingleMeshForSelfCollisions) {
   EXPECT_EQ(found.exact_tests, alone.exact_tests);
 }
 
+TEST(StartWarnings, CountThePairsWithTheTimeZero) {
+  EXPECT_TRUE(start_warnings(0).empty());
+  EXPECT_TRUE(start_warnings(ContinuousCollisions{}).empty());
+  EXPECT_EQ(start_warnings(1).front().text, "1 pair meets already at the start of the motion, so its time is 0");
+  ContinuousCollisions found;
+  found.vertex_face = {{0, TriangleId(1), 0}, {0, TriangleId(2), 0.25}};
+  found.edge_edge = {{{0, 1}, {2, 3}, 0}};
+  ASSERT_EQ(start_warnings(found).size(), 1U);
+  EXPECT_EQ(start_warnings(found).front().code, WarningCode::meet_at_start);
+  EXPECT_TRUE(start_warnings(found).front().text.starts_with("2 pairs meet already"));
+  SceneCollisions scene;
+  scene.objects.push_back({ObjectId(0), ObjectId(1), found.vertex_face, found.vertex_face, found.edge_edge});
+  EXPECT_TRUE(start_warnings(scene).front().text.starts_with("3 pairs meet already"));
+}
+
 }  // namespace
 }  // namespace blum
