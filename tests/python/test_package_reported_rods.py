@@ -125,7 +125,9 @@ FAMILY = {
     "5 sides": (130, lambda: straight(210, 0.5, 5)),
     "6 sides": (165, lambda: straight(260, 0.4, 6, ALONG_X, (0.1, 0.2, 0.3))),
     "6 sides, turned": (120, lambda: straight(150, 0.4, 6, rotation(1))),
+    "16 sides, turned": (165, lambda: straight(190, 0.2, 16, rotation(5308))),
     "ellipse": (120, lambda: straight(190, 0.5, "ellipse", only_curves=False)),
+    "ellipse, turned": (170, lambda: straight(190, 0.5, "ellipse", rotation(2), only_curves=False)),
     "bar": (120, lambda: straight(220, 0.5, "bar", ALONG_X, only_curves=False)),
     "1000 diameters": (120, lambda: straight(1000, 0.5, 48)),
     "3000 diameters": (120, lambda: straight(3000, 0.5, 12)),
@@ -136,6 +138,7 @@ FAMILY = {
     "nail": (120, lambda: nail(160, 0.5, 3, 1)),
     "nail with a long head": (150, lambda: nail(220, 0.4, 4, 6, ALONG_X)),
     "nail, 45 degrees": (110, lambda: nail(100, 0.3, 1.5, 1, HALFWAY)),
+    "nail, turned": (120, lambda: nail(300, 0.5, 8, 2, rotation(5))),
     "plate with pins": (110, lambda: pins(2, 80, 0.3, rotation(8))),
     "rods beside a ball": (120, lambda: beside_ball(150, 0.5)),
     "thin rods beside a ball": (120, lambda: beside_ball(200, 0.2, ALONG_X)),
@@ -152,6 +155,7 @@ FAMILY = {
     "large ring": (160, lambda: ring(200, 0.4, count=600)),
     "spring": (120, lambda: spring(10, 10, 2, 0.5)),
     "spring, turned": (120, lambda: spring(15, 20, 2, 0.4, rotation(14))),
+    "narrow spring": (160, lambda: spring(5, 30, 5, 0.2)),
     "wave": (120, lambda: wave(200, 4, 0.5)),
     "wave, turned": (150, lambda: wave(260, 8, 0.4, rotation(15))),
 }
@@ -197,3 +201,21 @@ def test_the_axis_of_a_wire_is_its_middle(name):
         length = sum(np.linalg.norm(np.diff(m.path, axis=0), axis=1).sum() for m in wire.middles)
         slack = sum(0.01 * length if m.closed else 6 * m.radius for m in wire.middles)
         assert abs(np.linalg.norm(steps, axis=1).sum() - length) <= slack
+
+
+# Three ends are 1.65 to 2.55 diameters short, because contracted strips do not grow back far enough.
+SHORT = pytest.mark.xfail(strict=True, reason="an end is more than 1.5 diameters short")
+SEEDS = [pytest.param(seed, marks=SHORT) if seed in (1, 11, 28) else seed for seed in range(40)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_flat_rods_keep_their_ends(seed):
+    """The axis of a flat rod is a strip narrower than a voxel. It ends a radius before the end of the rod."""
+    random = np.random.default_rng(seed)
+    radius = random.choice([0.2, 0.3, 0.4, 0.5])
+    sides = ["ellipse", "bar"][seed % 2]
+    wire = straight(random.uniform(100, 500) * radius, radius, sides, rotation(seed), only_curves=False)
+    axis = blum.medial_axis(*wire.mesh).certified(random.choice([120, 150, 165, 170]))
+    assert axis.certificate.holds
+    gaps = spatial.cKDTree(axis.vertices).query(wire.middles[0].path)[0]
+    assert gaps.max() <= 3 * radius

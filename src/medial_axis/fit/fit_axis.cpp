@@ -17,6 +17,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/vec3.hpp"
 #include "medial_axis/fit/balance.hpp"
+#include "medial_axis/fit/border_directions.hpp"
 #include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/split_curves.hpp"
 #include "medial_axis/fit/trim.hpp"
@@ -29,111 +30,6 @@
 
 namespace blum::detail {
 namespace {
-
-/// Directions in which vertices of rims, and ends of seams and curves, may slide. They are unit vectors, or zero if
-/// unknown.
-class BorderDirections {
- public:
-  /// @param kinds  the kind of each vertex. All arguments must outlive this object.
-  BorderDirections(const AxisLists& lists, const Incidence& incidence, const std::vector<Kind>& kinds)
-      : lists_(lists), incidence_(incidence), kinds_(kinds) {}
-
-  /// Returns the direction away from the sheet at a vertex of a rim, computed from up to four edges of the rim on
-  /// either side.
-  [[nodiscard]] Vec3d of_rim(std::uint32_t v) const;
-  /// Returns the direction along the sheet in which its depth decreases: from a vertex towards its two footprints.
-  [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const;
-  /// Returns the direction in which a seam or curve ends at a vertex, from the last one or two of its edges. Edges
-  /// count if they have at least `triangles` triangles; for curves `triangles` is 0, and edges must have none.
-  [[nodiscard]] Vec3d of_end(std::uint32_t v, std::size_t triangles) const;
-  /// Returns true if the last edge of a curve runs beside another, longer edge of a curve from the same vertex. Such an
-  /// edge will be removed, so its end must not slide along the longer edge.
-  [[nodiscard]] bool comes_back(std::uint32_t v) const;
-
- private:
-  /// Returns a vector in the plane of the only triangle of an edge. It points outwards, at right angles to the edge,
-  /// and is as long as the edge.
-  [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const;
-
-  const AxisLists& lists_;
-  const Incidence& incidence_;
-  const std::vector<Kind>& kinds_;
-};
-
-Vec3d BorderDirections::of_rim(std::uint32_t v) const {
-  constexpr int reach = 4;
-  Vec3d sum;
-  for (const std::uint32_t first : incidence_.edges_of_vertex()[v]) {
-    if (incidence_.triangles_of_edge()[first].size() != 1) continue;
-    std::uint32_t e = first;
-    std::uint32_t from = v;
-    for (int n = 0; n < reach; ++n) {
-      sum += outwards_of(e) / (1 + n);
-      const std::uint32_t next = other_end(incidence_.edges()[e], from);
-      if (!kinds_[next].is_rim()) break;
-      const std::uint32_t at = e;
-      for (const std::uint32_t other : incidence_.edges_of_vertex()[next]) {
-        if (other != at && incidence_.triangles_of_edge()[other].size() == 1) e = other;
-      }
-      from = next;
-    }
-  }
-  const double size = length(sum);
-  return size > 0 ? sum / size : Vec3d{};
-}
-
-Vec3d BorderDirections::towards_surface(std::uint32_t v) const {
-  const AxisVertex& vertex = lists_.vertices[v];
-  const Vec3d way = vertex.footprints[0] + vertex.footprints[1] - 2 * vertex.position;
-  const double size = length(way);
-  constexpr double least = 0.1;  // relative to the radius: a separation angle of 174 degrees
-  return size > least * vertex.radius ? way / size : Vec3d{};
-}
-
-Vec3d BorderDirections::outwards_of(std::uint32_t e) const {
-  const auto& side = incidence_.edges()[e];
-  const std::uint32_t third = third_corner(lists_.triangles[incidence_.triangles_of_edge()[e][0]], side);
-  const Vec3d& at = lists_.vertices[side[0]].position;
-  const Vec3d along = lists_.vertices[side[1]].position - at;
-  const Vec3d in = lists_.vertices[third].position - at;
-  const double squared = squared_length(along);
-  if (!(squared > 0)) return {};
-  const Vec3d out = along * (dot(in, along) / squared) - in;
-  const double size = length(out);
-  return size > 0 ? out * (std::sqrt(squared) / size) : Vec3d{};
-}
-
-Vec3d BorderDirections::of_end(std::uint32_t v, std::size_t triangles) const {
-  const auto next_of = [&](std::uint32_t at, std::uint32_t before) {
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
-      const std::size_t count = incidence_.triangles_of_edge()[e].size();
-      if (triangles == 0 ? count > 0 : count < triangles) continue;
-      const std::uint32_t other = other_end(incidence_.edges()[e], at);
-      if (other != before) return other;
-    }
-    return at;
-  };
-  const std::uint32_t first = next_of(v, v);
-  const std::uint32_t second = kinds_[first].is_seam() || kinds_[first].is_curve() ? next_of(first, v) : first;
-  const Vec3d way = lists_.vertices[v].position - lists_.vertices[second].position;
-  const double size = length(way);
-  return size > 0 ? way / size : Vec3d{};
-}
-
-bool BorderDirections::comes_back(std::uint32_t v) const {
-  constexpr double same_way = 0.95;  // cosine
-  const std::uint32_t own = incidence_.edges_of_vertex()[v][0];
-  const std::uint32_t at = other_end(incidence_.edges()[own], v);
-  const Vec3d way = lists_.vertices[v].position - lists_.vertices[at].position;
-  for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
-    if (e == own || !incidence_.triangles_of_edge()[e].empty()) continue;
-    const Vec3d other = lists_.vertices[other_end(incidence_.edges()[e], at)].position - lists_.vertices[at].position;
-    const bool is_longer =
-        squared_length(other) > squared_length(way) || (squared_length(other) == squared_length(way) && e < own);
-    if (is_longer && dot(way, other) >= same_way * length(way) * length(other)) return true;
-  }
-  return false;
-}
 
 /// 64-bit hash of the data that a step depends on. The probability that two of 10^6 different inputs have the same hash
 /// is 10^-7.
@@ -194,6 +90,10 @@ class Fitter {
   /// A border vertex does not move if it is this close to where its border should end, in voxels. The halvings find
   /// that point with the same accuracy.
   static constexpr double settled = 0.001;
+  /// Greatest radius of thin parts, in voxels.
+  static constexpr double thin_part = 2;
+  /// Degrees: walls at this separation angle or more are on opposite sides of a thin part.
+  static constexpr double opposite_walls = 150;
   /// Greatest distance of a point of a curve from the middle of its round part, in voxels.
   static constexpr double off_centre = 0.1;
   /// Voxels: the point opposite of a footprint is the closest point to a query this far from the vertex, on the other
@@ -230,7 +130,7 @@ class Fitter {
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
       if (is_shown(lists_.vertices[v], 3)) return std::nullopt;
-      if (kinds_[v].rims + kinds_[v].curves == 0) return centred_in_thin(v);
+      if (kinds_[v].rims + kinds_[v].curves == 0) return middle_of_thin(v);
       const Moved found = between(v, 3);
       if (!found || !is_shown(*found, 3)) return centred(v);
       // A vertex of a rim that has only one footprint is often next to a point between two walls.
@@ -369,12 +269,12 @@ class Fitter {
     return between(v, 2);
   }
 
-  /// Returns the middle of a round part around a vertex, if that point is shown.
+  /// Returns the middle of a round or thin part around a vertex, if that point is shown.
   [[nodiscard]] Moved centred(std::uint32_t v) {
     const Vec3d& at = lists_.vertices[v].position;
     if (known_.not_round.contains({at.x, at.y, at.z})) return std::nullopt;
     Moved found = centred_at(at);
-    if (!found) found = centred_in_thin(v);
+    if (!found) found = middle_of_thin(v);
     is_not_round_[v] = found ? 0 : 1;
     return found;
   }
@@ -385,9 +285,34 @@ class Fitter {
     const std::optional<ThinBall> ball = ball_around(surface_, nearest, at, voxel_);
     return ball ? centred_at(ball->centre) : std::nullopt;
   }
-  [[nodiscard]] Moved centred_in_thin(std::uint32_t v) const {
-    const AxisVertex& vertex = lists_.vertices[v];
-    return centred_in_thin(vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], vertex.elements[0]});
+  /// Returns the middle of a thin part around a point. If the part is not round, returns a shown point between two of
+  /// its walls.
+  /// @param nearest  closest point of the surface to `at`.
+  [[nodiscard]] Moved middle_of_thin(const Vec3d& at, const NearestPoint& nearest) const {
+    const double thin = thin_part * voxel_;
+    if (!(nearest.distance > 0) || nearest.distance > thin) return std::nullopt;
+    const std::optional<ThinBall> ball = ball_around(surface_, nearest, at, thin, target_.theta);
+    if (!ball) return std::nullopt;
+    if (auto found = centred_at(ball->centre)) return found;
+    // Balls in sharp edges of thick parts are small, too, but their walls are not opposite.
+    if (ball->angle_across < opposite_walls) return std::nullopt;
+    AxisVertex found = vertex_of_ball(*ball);
+    widen(found);
+    for (SiteId& site : found.sites) site = target_.input_site(site);
+    return is_shown(found, 3) ? Moved(found) : std::nullopt;
+  }
+  [[nodiscard]] Moved middle_of_thin(std::uint32_t v) const {
+    const Stop stop = stop_of(lists_.vertices[v]);
+    return middle_of_thin(stop.at, stop.nearest);
+  }
+  /// Returns middle_of_thin() if it is beside the point, not before or behind it along a direction.
+  [[nodiscard]] Moved middle_beside(const Vec3d& at, const Vec3d& direction) const {
+    constexpr double most_along = 0.1;  // of the radius
+    const NearestPoint nearest = surface_.nearest(at, {});
+    if (!surface_.is_inside(at, nearest)) return std::nullopt;
+    const Moved found = middle_of_thin(at, nearest);
+    const bool is_beside = found && std::abs(dot(found->position - at, direction)) <= most_along * found->radius;
+    return is_beside ? found : std::nullopt;
   }
   [[nodiscard]] Moved centred_at(const Vec3d& start) const {
     const std::optional<RoundCentre> centre =
@@ -518,9 +443,10 @@ class Fitter {
     std::vector<Footprint> feet;
     const AxisVertex* sheet = nullptr;  ///< A shown vertex of the sheet.
     double end_radius = least_radius;   ///< Radius at which the path ends, in voxels.
-    /// True if the last point was on the sheet, seam or curve but not shown: it is past the border.
+    /// True if the last point was on the sheet, seam or curve but not shown, or on another sheet: it is past the
+    /// border.
     bool is_past = false;
-    bool is_round = false;  ///< True if some point was in the middle of a round part.
+    bool is_round = false;  ///< True if some point was in the middle of a round or thin part.
   };
   [[nodiscard]] bool is_shown_on(const Way& way, const AxisVertex& vertex) const {
     if (vertex.radius < way.end_radius * voxel_ && vertex.separation_angle < parallel) return false;
@@ -536,6 +462,7 @@ class Fitter {
     if (found && !way.is_past) return found;
     if (!way.is_curve) return std::nullopt;
     found = centred_at(place);
+    if (!found) found = middle_beside(place, way.direction);
     if (found && !is_shown_on(way, *found)) found.reset();
     way.is_past = way.is_past || (way.is_round && !found);
     way.is_round = way.is_round || found;
@@ -575,8 +502,13 @@ class Fitter {
         continue;
       }
       // A step longer than the radius may have crossed the surface.
-      const bool is_beyond = way.is_past || start.radius <= (t - good) * voxel_;
-      start = *last_shown(at, good, t, start);
+      bool is_beyond = way.is_past || start.radius <= (t - good) * voxel_;
+      const auto look = [&](double nearer) {
+        Moved found = at(nearer);
+        is_beyond = is_beyond || (way.is_past && way.is_curve);
+        return found;
+      };
+      start = *last_shown(look, good, t, start);
       // Beyond the rim of a lens-shaped part, only one wall is near.
       return is_beyond || start.separation_angle < target_.theta + nearly_theta ? Moved(start) : std::nullopt;
     }
@@ -584,7 +516,7 @@ class Fitter {
     // Far out, three facets may be equally far away although the part is not round there, as in the cap of a capsule.
     const Moved centre = way.is_curve ? centred_at(start.position) : std::nullopt;
     const bool is_centre = centre && length(centre->position - start.position) <= off_centre * voxel_;
-    return is_centre ? Moved(start) : std::nullopt;
+    return is_centre || (way.is_curve && middle_beside(start.position, way.direction)) ? Moved(start) : std::nullopt;
   }
   [[nodiscard]] Moved slide_inwards(Way& way) const {
     const auto at = [&](double t) { return on(way, t); };
@@ -776,10 +708,14 @@ class Fitting {
     return furthest;
   }
   void contract(const ShortLengths& lengths) {
+    const std::size_t before = lists_.vertices.size();
     if (contract_short(lists_, fitter().incidence(), target_.surface, target_.voxel, lengths, context_)) {
       fitter_.reset();
     }
+    has_contracted_ = lists_.vertices.size() != before;
   }
+  /// Returns true if the last call of contract() changed anything. Narrow strips may then be shorter than before.
+  [[nodiscard]] bool has_contracted() const { return has_contracted_; }
   /// Removes cells whose angle is at most theta, and cells that lie on other cells, as far as homotopy allows.
   /// @return  true if the number of triangles and edges changed.
   bool trim_excess() {
@@ -827,6 +763,7 @@ class Fitting {
   const Context& context_;
   Fitter::Known known_;
   std::unique_ptr<Fitter> fitter_;
+  bool has_contracted_ = false;
 };
 
 }  // namespace
@@ -852,7 +789,8 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   fitting.take(&Fitter::straighten, with_seams);
   fitting.take(&Fitter::cut_rims, with_seams);
   double furthest_cut = fitting.take(&Fitter::cut_rims, with_rims);
-  bool is_changed = fitting.trim_excess();
+  bool is_changed = fitting.has_contracted();
+  is_changed = fitting.trim_excess() || is_changed;
   fitting.take(&Fitter::place_seams, with_rims);
   fitting.bend_curves();
   // A change may require another round, and ends of curves that move far need several rounds.
@@ -863,10 +801,11 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
     is_changed = fitting.trim_excess() || is_changed;
     if (!is_changed && furthest_cut < far) break;
     furthest_cut = fitting.take(&Fitter::cut_rims, with_rims);
-    is_changed = false;
+    is_changed = fitting.has_contracted();
   }
-  // Strips of sheets around a curve may have become the curve only now, shorter than the curve should be.
-  constexpr int most_cuts = 8;
+  // Strips of sheets around a curve may have become the curve only now, shorter than the curve should be. In thin
+  // parts that are not round, curves may end far from where the angle is theta.
+  constexpr int most_cuts = 64;
   for (int n = 0; n < most_cuts; ++n) {
     fitting.merge();
     if (fitting.take(&Fitter::cut_ends) < far) break;

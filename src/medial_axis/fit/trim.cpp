@@ -365,12 +365,10 @@ class Trimmer {
   [[nodiscard]] double length_of(std::uint32_t e) const {
     return length(position(incidence_.edges()[e][0]) - position(incidence_.edges()[e][1]));
   }
-  /// Returns true if `side` is the longest side of a triangle that is so flat that it practically lies on its other
-  /// sides.
-  [[nodiscard]] bool is_covered(std::uint32_t t, std::uint32_t side) const {
-    const auto& sides = incidence_.sides()[t];
-    const double longest = length_of(side);
-    if (std::any_of(sides.begin(), sides.end(), [&](std::uint32_t e) { return length_of(e) > longest; })) return false;
+  /// Returns true if a triangle is so flat that it practically lies on any two of its sides, except for the longest.
+  [[nodiscard]] bool is_flat(std::uint32_t t) const {
+    double longest = 0;
+    for (const std::uint32_t e : incidence_.sides()[t]) longest = std::max(longest, length_of(e));
     const auto& corners = lists_.triangles[t];
     const auto& [a, b, c] = corners;
     const bool is_round = std::all_of(corners.begin(), corners.end(),
@@ -378,13 +376,26 @@ class Trimmer {
     const double thin = is_round ? limits_.thin_if_round : limits_.thin;
     return length(cross(position(b) - position(a), position(c) - position(a))) <= thin * longest;
   }
+  /// Returns true if a triangle is flat and `side` is its longest side, so that it practically lies on the other two.
+  [[nodiscard]] bool is_covered(std::uint32_t t, std::uint32_t side) const {
+    const auto& sides = incidence_.sides()[t];
+    const double longest = length_of(side);
+    return std::none_of(sides.begin(), sides.end(), [&](std::uint32_t e) { return length_of(e) > longest; }) &&
+           is_flat(t);
+  }
 
   /// Returns true if the end of a curve lies on a sheet, or if its last edge is short and sticks out of a rim. In the
   /// second case, the rim is later moved outwards instead.
   [[nodiscard]] bool is_whisker(std::uint32_t end, std::uint32_t own) const {
     if (is_on_sheet_[end]) return true;
-    const auto at = incidence_.edges_of_vertex()[other_end(incidence_.edges()[own], end)];
-    const bool is_at_rim = std::any_of(at.begin(), at.end(), [&](std::uint32_t e) { return triangles_left_[e] == 1; });
+    const std::uint32_t foot = other_end(incidence_.edges()[own], end);
+    const auto at = incidence_.edges_of_vertex()[foot];
+    // A strip of flat triangles is a curve itself, which may go on from this edge.
+    const auto around = incidence_.triangles_of_vertex()[foot];
+    const bool is_strip = lists_.vertices[foot].radius <= limits_.whiskers &&
+                          std::all_of(around.begin(), around.end(), [&](std::uint32_t t) { return is_flat(t); });
+    const bool is_at_rim =
+        !is_strip && std::any_of(at.begin(), at.end(), [&](std::uint32_t e) { return triangles_left_[e] == 1; });
     return is_at_rim && length_of(own) <= limits_.whiskers;
   }
   /// Finds vertices that belong to no triangle but are within `limits_.beside` of one.

@@ -20,6 +20,12 @@ constexpr double rounding = 1e-9;
 /// first depth.
 constexpr int most_depths = 28;
 constexpr int most_climbs = 3;
+/// The same if balls of a larger angle than `opposite` are looked for. They are only a little larger.
+constexpr int most_steep_climbs = 8;
+/// A ball counts as larger if its radius is at least this many times that of the ball before. If the walls of the ball
+/// before are already opposite, `larger_opposite` applies.
+constexpr double larger = 1.01;
+constexpr double larger_opposite = 1.0001;
 /// Degrees: if the angle between two footprints exceeds this, the walls are opposite, and no ball next to it is larger.
 constexpr double opposite = 150;
 
@@ -98,25 +104,28 @@ Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& di
 
 /// Returns a larger ball next to a ball in a corner of a part of the solid. The centre moves away from both walls.
 /// @param overlaps  true: the balls around both centres overlap, so both are in one component of the solid.
-std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius, bool overlaps) {
-  if (ball.angle_across > opposite) return std::nullopt;
+/// @param enough    degrees: the result is nullopt if the ball's angle exceeds this.
+std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius, bool overlaps,
+                              double enough) {
+  if (ball.angle_across > enough) return std::nullopt;
   const double own = ball.nearest.distance;
   const Vec3d away = (ball.centre - ball.nearest.point) / own + (ball.centre - ball.other.point) / own;
   const double size = length(away);
   if (!(size > 0)) return std::nullopt;
   const Deepest deepest =
       deepest_along(surface, ball.centre, away / size, radius, ball.nearest, overlaps ? own : HUGE_VAL);
-  if (deepest.nearest.distance < 1.01 * own) return std::nullopt;
+  if (deepest.nearest.distance < (ball.angle_across > opposite ? larger_opposite : larger) * own) return std::nullopt;
   return ball_touching(surface, deepest.nearest, deepest.point, radius);
 }
 
 /// Follows larger balls, starting from a ball.
-std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinBall> ball, double radius,
-                                     bool overlaps) {
-  for (int n = 0; ball && n < most_climbs; ++n) {
-    const std::optional<ThinBall> larger = climb(surface, *ball, radius, overlaps);
-    if (!larger || larger->nearest.distance <= ball->nearest.distance) break;
-    ball = larger;
+std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinBall> ball, double radius, bool overlaps,
+                                     double enough = opposite) {
+  const int most = enough > opposite ? most_steep_climbs : most_climbs;
+  for (int n = 0; ball && n < most; ++n) {
+    const std::optional<ThinBall> next = climb(surface, *ball, radius, overlaps, enough);
+    if (!next || next->nearest.distance <= ball->nearest.distance) break;
+    ball = next;
   }
   return ball;
 }
@@ -124,8 +133,9 @@ std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinB
 }  // namespace
 
 std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
-                                    double radius) {
-  return largest_from(surface, ball_touching(surface, nearest, inside, radius), radius, true);
+                                    double radius, double enough) {
+  const std::optional<ThinBall> first = ball_touching(surface, nearest, inside, radius);
+  return largest_from(surface, first, radius, true, std::max(opposite, enough));
 }
 
 std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched, const Vec3d& beyond,

@@ -33,8 +33,9 @@ struct ThinBall {
 /// next to it, the search continues with these.
 /// @param nearest  closest point of the surface to `inside`.
 /// @param radius   mesh units. The result is nullopt if the ball would be larger.
+/// @param enough   degrees: the search ends at a ball whose `angle_across` exceeds this and 150.
 [[nodiscard]] std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest,
-                                                  const Vec3d& inside, double radius);
+                                                  const Vec3d& inside, double radius, double enough = 0);
 
 /// Returns the first ball of ball_around(), without a search for larger ones.
 /// @param touched  closest point of the surface to `inside`.
