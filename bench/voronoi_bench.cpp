@@ -53,12 +53,28 @@ void voronoi_case(benchmark::State& state, const TriangleMesh& mesh, const Voron
   state.counters["exact_lines"] = static_cast<double>(found.exact_lines);
 }
 
-void add_case(const std::string& name, const TriangleMesh& mesh, const VoronoiOptions& options = {.resolution = 1},
+void add_case(const std::string& name, const TriangleMesh& mesh,
+              const VoronoiOptions& options = {.method = VoronoiMethod::cubes, .resolution = 1},
               bool also_turned = true) {
   add("voronoi/" + name, [=](benchmark::State& state) { voronoi_case(state, mesh, options); });
   if (!also_turned) return;
   add("voronoi/" + name + "/turned",
       [mesh = turned(mesh), options](benchmark::State& state) { voronoi_case(state, mesh, options); });
+}
+
+/// The exact diagram of a convex solid.
+void convex_case(const std::string& name, const TriangleMesh& mesh) {
+  const auto run = [](benchmark::State& state, const TriangleMesh& of) {
+    VoronoiReport found;
+    const Times times = time_runs([&] { found = voronoi_complex(of, {.part = VoronoiPart::walls}).report; });
+    report(state, times, static_cast<double>(found.faces));
+    report_phases(state, found.phases);
+    if (!found.certified || !found.exact) return state.SkipWithError("not exact");
+    state.counters["triangles"] = static_cast<double>(of.triangles.size());
+    state.counters["faces"] = static_cast<double>(found.faces);
+  };
+  add("convex/" + name, [=](benchmark::State& state) { run(state, mesh); });
+  add("convex/" + name + "/turned", [run, mesh = turned(mesh)](benchmark::State& state) { run(state, mesh); });
 }
 
 /// Medial axes from exact walls and from the grid, at one angle.
@@ -164,6 +180,13 @@ void prism_cases(std::size_t corners) {
 }
 
 const bool registered = [] {
+  convex_case("box", make_box());
+  for (const int sides : {16, 256}) {
+    convex_case("cylinder-" + std::to_string(sides), make_cylinder({.sides = sides}));
+  }
+  for (const int frequency : {4, 8, 16}) {
+    convex_case("sphere-" + std::to_string(frequency), make_sphere({.frequency = frequency}));
+  }
   add_case("box", make_box());
   add_case("star", make_star());
   for (const int sides : {16, 64, 256}) {

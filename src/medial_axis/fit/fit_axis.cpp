@@ -269,12 +269,23 @@ class Fitter {
     return between(v, 2);
   }
 
-  /// Returns the middle of a round or thin part around a vertex, if that point is shown.
+  /// Returns true if a vertex is on a curve, or on a strip: a part of a sheet without vertices inside. The sheet of a
+  /// thin wall has vertices inside, and its rims are found where the angle is theta.
+  [[nodiscard]] bool is_on_strip(std::uint32_t v) const {
+    const auto at = incidence_.triangles_of_vertex()[v];
+    return std::all_of(at.begin(), at.end(), [&](std::uint32_t t) {
+      const auto& corners = lists_.triangles[t];
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](std::uint32_t c) { return kinds_[c].rims + kinds_[c].curves > 0; });
+    });
+  }
+  /// Returns the middle of a round part around a vertex, or of a thin part around a strip, if that point is shown.
   [[nodiscard]] Moved centred(std::uint32_t v) {
     const Vec3d& at = lists_.vertices[v].position;
     if (known_.not_round.contains({at.x, at.y, at.z})) return std::nullopt;
     Moved found = centred_at(at);
-    if (!found) found = middle_of_thin(v);
+    if (!found && is_on_strip(v)) found = middle_of_thin(v);
+    if (!found) found = centred_in_thin(v);
     is_not_round_[v] = found ? 0 : 1;
     return found;
   }
@@ -284,6 +295,10 @@ class Fitter {
     if (!(nearest.distance > 0) || nearest.distance > voxel_) return std::nullopt;
     const std::optional<ThinBall> ball = ball_around(surface_, nearest, at, voxel_);
     return ball ? centred_at(ball->centre) : std::nullopt;
+  }
+  [[nodiscard]] Moved centred_in_thin(std::uint32_t v) const {
+    const Stop stop = stop_of(lists_.vertices[v]);
+    return centred_in_thin(stop.at, stop.nearest);
   }
   /// Returns the middle of a thin part around a point. If the part is not round, returns a shown point between two of
   /// its walls.

@@ -24,7 +24,7 @@ struct IntegerPlane {
 struct PlacedCorner {
   Vec3d at;
   double height = 0;
-  double error = 0;  ///< bound on the error of each coordinate; infinite if none is known
+  double error = 0;  ///< bound on the error of each coordinate; infinite if none is known.
   /// How far the point moves at most if each half-space moves by 1; infinite if no bound is known.
   double condition = 0;
 };
