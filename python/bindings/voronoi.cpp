@@ -8,10 +8,13 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -25,6 +28,18 @@
 #include "structs.hpp"
 
 namespace blum::python {
+namespace {
+
+/// VoronoiReport::joined_faces.
+using JoinedFaces = std::vector<std::array<std::uint32_t, 2>>;
+
+std::vector<VoronoiSite> sites_of(const MeshView& mesh, JoinedFaces joined, const Context& context) {
+  VoronoiReport report;
+  report.joined_faces = std::move(joined);
+  return voronoi_sites(mesh, report, context);
+}
+
+}  // namespace
 
 void bind_voronoi(nb::module_& m) {
   bind_options<VoronoiOptions>(m);
@@ -52,12 +67,12 @@ void bind_voronoi(nb::module_& m) {
   bind_struct<VoronoiSite>(m);
   m.def(
       "voronoi_sites",
-      [](const MeshArrays& mesh) {
+      [](const MeshArrays& mesh, JoinedFaces joined) {
         nb::list out;
-        for (const VoronoiSite& site : voronoi_sites(mesh.view())) out.append(to_python(site));
+        for (const VoronoiSite& site : sites_of(mesh.view(), std::move(joined), {})) out.append(to_python(site));
         return out;
       },
-      nb::arg("mesh"));
+      nb::arg("mesh"), nb::arg("joined_faces"));
   bind_struct<VoronoiWall>(m);
   bind_struct<VoronoiSeam>(m);
   bind_struct<VoronoiJunction>(m);
@@ -70,14 +85,14 @@ void bind_voronoi(nb::module_& m) {
       nb::arg("complex"));
   m.def(
       "write_voronoi_graph",
-      [](const std::filesystem::path& path, const Complex& complex, const MeshArrays& mesh,
+      [](const std::filesystem::path& path, const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined,
          const std::vector<std::pair<std::string, std::string>>& metadata) {
         const MeshView view = mesh.view();
         run_call({0, nb::none()}, [&](const Context& context) {
-          write_voronoi_graph(path, voronoi_graph(complex, context), voronoi_sites(view, context), metadata);
+          write_voronoi_graph(path, voronoi_graph(complex, context), sites_of(view, joined, context), metadata);
         });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("metadata"));
+      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("metadata"));
   using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;
   m.def(
       "with_failing_cells",

@@ -93,7 +93,7 @@ class VoronoiComplex(Complex):
         >>> len(found), found[0].kind, len(found[0].triangles)
         (6, 'face', 2)
         """
-        return ShortList(_core.voronoi_sites(self._mesh._arrays))
+        return ShortList(_core.voronoi_sites(self._mesh._arrays, self.report.joined_faces))
 
     def regions(self) -> list[VoronoiRegion]:
         """Returns the regions by ascending site, each with `volume`, `surface_area` and `neighbours` (`site`, `area`).
@@ -215,7 +215,13 @@ class VoronoiComplex(Complex):
         ...     "walls" in (pathlib.Path(folder) / "box.json").read_text()
         True
         """
-        _core.write_voronoi_graph(Path(os.fspath(path)), self._core, self._mesh._arrays, list(self._metadata().items()))
+        _core.write_voronoi_graph(
+            Path(os.fspath(path)),
+            self._core,
+            self._mesh._arrays,
+            self.report.joined_faces,
+            list(self._metadata().items()),
+        )
 
     def _metadata(self) -> dict[str, str]:
         bound = self.report.hausdorff_bound if self.report.certified else None

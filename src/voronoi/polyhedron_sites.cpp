@@ -131,4 +131,19 @@ std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const Context& cont
   return out;
 }
 
+std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const VoronoiReport& report, const Context& context) {
+  std::vector<VoronoiSite> out = voronoi_sites(mesh, context);
+  for (const auto& [from, to] : report.joined_faces) {
+    if (from >= out.size() || to >= out.size()) {
+      throw InvalidOption("voronoi_sites(): the report joins face " + std::to_string(std::max(from, to)) +
+                          ", but the mesh has " + std::to_string(out.size()) + " sites: pass the mesh of the complex");
+    }
+    std::vector<std::uint32_t>& all = out[to].triangles;
+    all.insert(all.end(), out[from].triangles.begin(), out[from].triangles.end());
+    std::sort(all.begin(), all.end());
+    out[from].triangles.clear();
+  }
+  return out;
+}
+
 }  // namespace blum

@@ -186,7 +186,11 @@ void finish_planes(const MeshView& mesh, const SiteTable& table, const ConvexBod
   report.exact = true;
   report.flatness = bodies.flatness;
   report.joined = bodies.joined;
-  for (const ConvexBody& body : bodies.bodies) report.faces += body.faces.planes.size();
+  for (const ConvexBody& body : bodies.bodies) {
+    report.faces += body.faces.planes.size();
+    report.joined_faces.insert(report.joined_faces.end(), body.faces.joined.begin(), body.faces.joined.end());
+  }
+  std::sort(report.joined_faces.begin(), report.joined_faces.end());
   // Positions are rounded once; joined junctions may have moved by the distance within which they were joined.
   const Box3 box = bounds(mesh);
   report.hausdorff_bound = bodies.joined + 0x1p-50 * (box.diagonal() + box.largest_coordinate());

@@ -144,11 +144,11 @@ READERS = {"npz": read_npz, "ply": read_ply, "vtp": read_vtp, "obj": read_obj}
 def test_a_box_is_certified(parts, tmp_path):
     out = tmp_path / "box.npz"
     found = run_json("voronoi", parts / "box.ply", "-o", out)
-    assert found["certified"] and found["mismatches"] == [] and found["failing"] == []
+    assert found["certified"] and found["exact"] and found["mismatches"] == [] and found["failing"] == []
     assert found["faces"] == SITES and found["reflex_edges"] == found["reflex_vertices"] == 0
     assert found["expected_betti"] == found["found_betti"] == [1, 0, SITES]
     assert found["outputs"] == [str(out)] and names(tmp_path) == ["box.npz"]
-    assert {"read", "cells", "complex", "homology", "write"} <= set(found["seconds"])
+    assert {"read", "planes", "complex", "homology", "write"} <= set(found["seconds"])
     assert found["options"]["depth"] == 24 and found["options"]["part"] == "all"
     counts = found["complex"]
     assert counts["triangles"] == counts["wall_triangles"] + counts["surface_triangles"]
@@ -257,8 +257,28 @@ def test_stl_is_welded_and_a_tolerance_recorded(parts, tmp_path):
 
 
 def test_a_finer_complex_has_more_cubes(parts):
-    coarse, fine = (run_json("voronoi", parts / "box.ply", "--resolution", n) for n in (1, 16))
+    coarse, fine = (
+        run_json("voronoi", parts / "box.ply", "--method", "cubes", "--resolution", n) for n in (1, 16)
+    )
     assert coarse["cubes"] < 1000 < fine["cubes"] and fine["certified"]
+
+
+def test_rotated_solids_have_the_graph_of_the_original(tmp_path):
+    run("make", "box", "-o", tmp_path / "box.obj")
+    lines = (tmp_path / "box.obj").read_text().splitlines()
+    box = np.array([line.split()[1:] for line in lines if line.startswith("v ")])
+    turn = np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]]) / 3
+    corners = (box.astype(float) @ turn.T * 0.7).astype(np.float32)
+    faces = [line for line in lines if line.startswith("f ")]
+    turned = tmp_path / "turned.obj"
+    turned.write_text("\n".join([*(f"v {x} {y} {z}" for x, y, z in corners.tolist()), *faces]))
+    found = run_json("voronoi", turned, "--walls", "--graph", tmp_path / "g.json")
+    graph = json.loads((tmp_path / "g.json").read_text())
+    assert found["exact"] and found["faces"] == SITES
+    assert [len(site["triangles"]) for site in graph["sites"]].count(2) == SITES
+    assert (len(graph["walls"]), len(graph["seams"]), len(graph["junctions"])) == (12, 8, 9)
+    as_given = run_json("voronoi", turned, "--walls", "--flatness", 0, "--allow-uncertified", "-o", tmp_path / "o.npz")
+    assert as_given["faces"] > SITES
 
 
 def test_threads_do_not_change_a_byte(parts, tmp_path):
@@ -343,7 +363,8 @@ def test_bad_options_are_rejected(parts, tmp_path):
     for option, value in (("--depth", 0), ("--depth", 25), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
         assert option in run("voronoi", box, "-o", out, option, value, status=2)[1]
     for option, value in (("--resolution", 1000), ("--tolerance", 0.002)):
-        assert "raise --max-cubes" in run("voronoi", box, "-o", out, option, value, status=2)[1]
+        given = ("--method", "cubes", option, value)
+        assert "raise --max-cubes" in run("voronoi", box, "-o", out, *given, status=2)[1]
     assert "--output" in run("voronoi", box, "-o", tmp_path / "o.xyz", status=2)[1]
     assert "give one" in run("voronoi", box, "--walls", "--medial", status=2)[1]
     assert "--allow-uncertified" in run("voronoi", box, "--allow-uncertified", status=2)[1]

@@ -322,7 +322,7 @@ void run(const Arguments& a) {
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
   const Counts counts(made.complex);
-  const std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, context);
+  const std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, found, context);
   std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
   const bool may_write = mismatches.empty() || a.allow_uncertified;
   bool is_written = a.output && may_write;

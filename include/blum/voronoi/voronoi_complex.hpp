@@ -150,8 +150,10 @@ struct VoronoiReport {
   /// True if all bodies are convex, and the method was not `cubes`. Then each sheet, seam and junction is that of the
   /// exact diagram of the bodies' planes. See VoronoiReport::flatness and VoronoiReport::joined.
   bool exact = false;
-  double flatness = 0;      ///< If exact: largest distance of a triangle's corner from its face's plane, mesh units.
-  double joined = 0;        ///< If exact: junctions and seams within this distance are one, mesh units.
+  double flatness = 0;  ///< If exact: largest distance of a triangle's corner from its face's plane, mesh units.
+  double joined = 0;    ///< If exact: junctions and seams within this distance are one, mesh units.
+  /// If exact: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second, smaller one.
+  std::vector<std::array<std::uint32_t, 2>> joined_faces;
   BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};     ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
@@ -194,6 +196,8 @@ struct Description<VoronoiReport> {
              "if exact: largest distance of a triangle's corner from its face's plane"},
       Member{"joined", &VoronoiReport::joined, "mesh units",
              "if exact: junctions and seams within this distance are one"},
+      Member{"joined_faces", &VoronoiReport::joined_faces, "",
+             "pairs of faces: the first one was joined to the second one, since rounding bends them"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},
       Member{"found_betti", &VoronoiReport::found, "", "components, tunnels, voids of the complex"},
@@ -244,7 +248,8 @@ struct VoronoiComplex {
   /// 1e-6 degrees. Corners run counterclockwise as seen from the region of site_b.
   ///
   /// Sites in site_a and site_b are numbered as in voronoi_sites(): first faces, in the order of their smallest
-  /// triangles, then reflex edges, then reflex vertices. If faces were joined, the smallest number stands for all.
+  /// triangles, then reflex edges, then reflex vertices. If faces were joined (VoronoiReport::joined_faces), the
+  /// smallest number stands for all.
   ///
   /// If VoronoiReport::exact, vertices also have the column `junction` (int32): 1 at a junction, 0 in the middle of a
   /// sheet.

@@ -11,6 +11,7 @@
 #include "blum/core/describe.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/voronoi/voronoi_complex.hpp"
 
 namespace blum {
 
@@ -48,5 +49,12 @@ struct Description<VoronoiSite> {
 /// @throws as polyhedron_sites().
 /// Cost: that of polyhedron_sites().
 [[nodiscard]] std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const Context& context = {});
+
+/// Returns the sites of a result of voronoi_complex(). If the result joined faces, the triangles of all of them belong
+/// to the face whose number stands for them. The other faces then have no triangles.
+/// @param report  of a complex of this mesh.
+/// @throws as polyhedron_sites(); InvalidOption if the report has faces that the mesh does not have.
+[[nodiscard]] std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const VoronoiReport& report,
+                                                     const Context& context = {});
 
 }  // namespace blum

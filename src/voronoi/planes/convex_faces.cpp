@@ -195,6 +195,9 @@ class Finder {
     }
     std::sort(triangles.begin(), triangles.end());
     out_.site.push_back(faces.front());
+    for (const std::uint32_t face : faces) {
+      if (face != faces.front()) out_.joined.push_back({face, faces.front()});
+    }
     if (faces.size() > 1) return add_fitted(triangles);
     const auto& [a, b, c] = mesh_.triangles[triangles.front()];
     const IntegerPoint p = point(a);

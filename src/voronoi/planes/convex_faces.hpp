@@ -1,6 +1,7 @@
 // Blum: the planes of a convex polyhedron. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -21,7 +22,8 @@ struct ConvexFaces {
   std::vector<std::vector<std::uint32_t>> triangles;   ///< for each plane: its triangles, ascending
   std::vector<std::vector<std::uint32_t>> neighbours;  ///< for each plane: the planes across its edges, ascending
   std::vector<Vec3d> middle;  ///< for each plane: a point in its polygon, mesh units, relative to `origin`
-  double flatness = 0;        ///< largest distance of a corner of a plane's triangles from the plane, mesh units
+  std::vector<std::array<std::uint32_t, 2>> joined;  ///< {face, the smallest face of its plane} if these differ
+  double flatness = 0;  ///< largest distance of a corner of a plane's triangles from the plane, mesh units
   Vec3d origin;
   double unit = 1;  ///< a power of two: all coordinates minus those of the origin are multiples of it
   Integer reach;    ///< bound on the coordinates of the polyhedron, in units
