@@ -203,9 +203,9 @@ def test_the_axis_of_a_wire_is_its_middle(name):
         assert abs(np.linalg.norm(steps, axis=1).sum() - length) <= slack
 
 
-# Three ends are 1.65 to 2.55 diameters short, because contracted strips do not grow back far enough.
+# Two ends are 1.65 and 1.7 diameters short, because contracted strips do not grow back far enough.
 SHORT = pytest.mark.xfail(strict=True, reason="an end is more than 1.5 diameters short")
-SEEDS = [pytest.param(seed, marks=SHORT) if seed in (1, 11, 28) else seed for seed in range(40)]
+SEEDS = [pytest.param(seed, marks=SHORT) if seed in (11, 28) else seed for seed in range(40)]
 
 
 @pytest.mark.parametrize("seed", SEEDS)

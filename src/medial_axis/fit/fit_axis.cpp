@@ -130,7 +130,7 @@ class Fitter {
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
       if (is_shown(lists_.vertices[v], 3)) return std::nullopt;
-      if (kinds_[v].rims + kinds_[v].curves == 0) return middle_of_thin(v);
+      if (kinds_[v].rims + kinds_[v].curves == 0) return centred_in_thin(v);
       const Moved found = between(v, 3);
       if (!found || !is_shown(*found, 3)) return centred(v);
       // A vertex of a rim that has only one footprint is often next to a point between two walls.
@@ -317,8 +317,9 @@ class Fitter {
     return is_shown(found, 3) ? Moved(found) : std::nullopt;
   }
   [[nodiscard]] Moved middle_of_thin(std::uint32_t v) const {
-    const Stop stop = stop_of(lists_.vertices[v]);
-    return middle_of_thin(stop.at, stop.nearest);
+    // The vertex has sites of the input; the ball needs those of the surface.
+    const Vec3d at = stop_of(lists_.vertices[v]).at;
+    return middle_of_thin(at, surface_.nearest(at, {}));
   }
   /// Returns middle_of_thin() if it is beside the point, not before or behind it along a direction.
   [[nodiscard]] Moved middle_beside(const Vec3d& at, const Vec3d& direction) const {
