@@ -191,9 +191,9 @@ void finish_planes(const MeshView& mesh, const SiteTable& table, const ConvexBod
     report.joined_faces.insert(report.joined_faces.end(), body.faces.joined.begin(), body.faces.joined.end());
   }
   std::sort(report.joined_faces.begin(), report.joined_faces.end());
-  // Positions are rounded once; joined junctions may have moved by the distance within which they were joined.
+  // Positions are rounded once; joined junctions have moved.
   const Box3 box = bounds(mesh);
-  report.hausdorff_bound = bodies.joined + 0x1p-50 * (box.diagonal() + box.largest_coordinate());
+  report.hausdorff_bound = bodies.moved + 0x1p-50 * (box.diagonal() + box.largest_coordinate());
   const auto count = static_cast<std::int64_t>(bodies.bodies.size());
   report.expected = {count, 0, part == VoronoiPart::all ? static_cast<std::int64_t>(report.faces) : 0};
   report.found = homology(out.complex.view(), context);

@@ -6,9 +6,11 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "blum/core/gather.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 
@@ -27,20 +29,54 @@ void each_edge(const Loop& loop, const Visit& visit) {
   for (std::size_t k = 0; k < loop.size(); ++k) visit(loop[k], loop[(k + 1) % loop.size()]);
 }
 
+constexpr std::size_t junctions_per_range = 64;
+
+/// Junctions in the order of each coordinate.
+class Places {
+ public:
+  using Place = std::pair<double, std::uint32_t>;
+
+  Places(const std::vector<PlaneStructure::Junction>& junctions, const std::vector<std::uint32_t>& which) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const std::uint32_t k : which) along_[axis].emplace_back(junctions[k].at[axis], k);
+      std::sort(along_[axis].begin(), along_[axis].end());
+    }
+  }
+
+  /// Returns all junctions within a distance of the box of two points, and others.
+  [[nodiscard]] std::span<const Place> between(const Vec3d& a, const Vec3d& b, double distance) const {
+    std::span<const Place> out(along_[0]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::vector<Place>& all = along_[axis];
+      const auto [low, high] = std::minmax(a[axis], b[axis]);
+      const auto first = std::lower_bound(all.begin(), all.end(), Place(low - distance, 0));
+      const auto last = std::upper_bound(first, all.end(), Place(high + distance, UINT32_MAX));
+      if (last - first < static_cast<std::ptrdiff_t>(out.size())) out = std::span<const Place>(first, last);
+    }
+    return out;
+  }
+
+ private:
+  std::array<std::vector<Place>, 3> along_;
+};
+
 class Joiner {
  public:
-  Joiner(PlaneStructure& structure, double tolerance) : structure_(structure), tolerance_(tolerance) {}
+  Joiner(PlaneStructure& structure, double tolerance, const Context& context)
+      : structure_(structure), tolerance_(tolerance), context_(context) {}
 
-  void run() {
-    join_junctions();
-    divide_edges();
+  /// Returns a bound on how far parts of the diagram have moved: the sum of the largest distances of each step.
+  double run() {
+    const double joined = join_junctions();
+    const double divided = divide_edges();
     for (std::vector<PlaneSheet>* list : {&structure_.sheets, &structure_.surface}) {
       std::vector<PlaneSheet> kept;
       for (const PlaneSheet& sheet : *list) add_reduced(sheet, kept);
       *list = std::move(kept);
     }
-    remove_passed_junctions();
+    const double passed = remove_passed_junctions();
     number_again();
+    return joined + divided + passed;
   }
 
  private:
@@ -53,22 +89,25 @@ class Joiner {
   }
 
   /// Lets each junction within the tolerance of others stand for them: the one with the most planes.
-  void join_junctions() {
+  /// @return the largest distance of a junction from the one that stands for it.
+  double join_junctions() {
     auto& junctions = structure_.junctions;
     const auto count = static_cast<std::uint32_t>(junctions.size());
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(junctions[a].at.x, a) < std::pair(junctions[b].at.x, b);
-    });
+    std::vector<std::uint32_t> all(count);
+    std::iota(all.begin(), all.end(), 0U);
+    const Places places(junctions, all);
+    const std::vector<Edge> pairs =
+        detail::gather<Edge>(context_, count, junctions_per_range, "close junctions", [&](std::size_t k, auto& out) {
+          const Vec3d& at = junctions[k].at;
+          const auto first = static_cast<std::uint32_t>(k);
+          for (const auto& [x, m] : places.between(at, at, most_grown * tolerance_)) {
+            if (m > first && length(junctions[m].at - at) <= std::max(reach(first), reach(m)))
+              out.emplace_back(first, m);
+          }
+        });
     detail::UnionFind joined(count);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      for (std::uint32_t m = k + 1; m < count; ++m) {
-        const Vec3d step = junctions[order[m]].at - junctions[order[k]].at;
-        if (step.x > most_grown * tolerance_) break;
-        if (length(step) <= std::max(reach(order[k]), reach(order[m]))) joined.join(order[k], order[m]);
-      }
-    }
+    for (const auto& [a, b] : pairs) joined.join(a, b);
+    double moved = 0;
     std::map<std::uint32_t, Loop> groups;
     for (std::uint32_t k = 0; k < count; ++k) groups[joined.find(k)].push_back(k);
     std::vector<std::uint32_t> leader(count);
@@ -81,6 +120,7 @@ class Joiner {
       std::vector<HalfSpaces::Index> planes;
       for (const std::uint32_t k : members) {
         leader[k] = best;
+        moved = std::max(moved, length(junctions[k].at - junctions[best].at));
         planes.insert(planes.end(), junctions[k].planes.begin(), junctions[k].planes.end());
       }
       detail::sort_unique(planes);
@@ -89,6 +129,7 @@ class Joiner {
     for (Loop* loop : loops()) {
       for (std::uint32_t& k : *loop) k = leader[k];
     }
+    return moved;
   }
 
   [[nodiscard]] std::vector<Loop*> loops() {
@@ -99,19 +140,29 @@ class Joiner {
   }
 
   /// Adds junctions to the edges that pass them within the tolerance.
-  void divide_edges() {
-    std::set<Edge> edges;
-    std::set<std::uint32_t> used;
+  /// @return the largest distance of such a junction from its edge.
+  double divide_edges() {
+    std::vector<Edge> edges;
+    std::vector<std::uint32_t> used;
     for (const Loop* loop : loops()) {
       each_edge(*loop, [&](std::uint32_t a, std::uint32_t b) {
-        if (a != b) edges.insert(sorted(a, b));
-        used.insert(a);
+        if (a != b) edges.push_back(sorted(a, b));
+        used.push_back(a);
       });
     }
+    detail::sort_unique(edges);
+    detail::sort_unique(used);
+    const Places places(structure_.junctions, used);
+    const std::vector<DividedEdge> divisions = detail::gather<DividedEdge>(
+        context_, edges.size(), junctions_per_range, "close seams", [&](std::size_t k, auto& out) {
+          DividedEdge found = divided_edge(edges[k], places);
+          if (!found.between.empty()) out.push_back(std::move(found));
+        });
+    double moved = 0;
     std::map<Edge, Loop> passed;
-    for (const Edge& edge : edges) {
-      Loop between = junctions_on(edge, used);
-      if (!between.empty()) passed[edge] = std::move(between);
+    for (const DividedEdge& division : divisions) {
+      passed[division.edge] = division.between;
+      moved = std::max(moved, division.distance);
     }
     for (Loop* loop : loops()) {
       Loop divided;
@@ -126,23 +177,33 @@ class Joiner {
       });
       *loop = std::move(divided);
     }
+    return moved;
   }
 
-  /// Returns the junctions on an edge, from its smaller end to its larger one.
-  [[nodiscard]] Loop junctions_on(const Edge& edge, const std::set<std::uint32_t>& used) const {
+  struct DividedEdge {
+    Edge edge;
+    Loop between;         ///< the junctions on the edge, from its smaller end to its larger one
+    double distance = 0;  ///< the largest distance of one from the edge
+  };
+
+  [[nodiscard]] DividedEdge divided_edge(const Edge& edge, const Places& places) const {
     const Vec3d& from = structure_.junctions[edge.first].at;
-    const Vec3d along = structure_.junctions[edge.second].at - from;
+    const Vec3d& to = structure_.junctions[edge.second].at;
+    const Vec3d along = to - from;
     const double size = squared_length(along);
+    DividedEdge out{edge, {}, 0};
     std::vector<std::pair<double, std::uint32_t>> found;
-    for (const std::uint32_t k : used) {
+    for (const auto& [x, k] : places.between(from, to, most_grown * tolerance_)) {
       if (k == edge.first || k == edge.second) continue;
       const Vec3d step = structure_.junctions[k].at - from;
       const double at = dot(step, along) / size;
-      if (at > 0 && at < 1 && length(step - along * at) <= reach(k)) found.emplace_back(at, k);
+      const double distance = length(step - along * at);
+      if (!(at > 0 && at < 1 && distance <= reach(k))) continue;
+      found.emplace_back(at, k);
+      out.distance = std::max(out.distance, distance);
     }
     std::sort(found.begin(), found.end());
-    Loop out;
-    for (const auto& [at, k] : found) out.push_back(k);
+    for (const auto& [at, k] : found) out.between.push_back(k);
     return out;
   }
 
@@ -173,7 +234,8 @@ class Joiner {
   }
 
   /// Removes junctions inside the solid at which exactly two edges end, both of the same sheets.
-  void remove_passed_junctions() {
+  /// @return the largest distance of one from the straight edge between those that stay.
+  double remove_passed_junctions() {
     std::map<Edge, std::vector<Edge>> sheets;
     std::map<std::uint32_t, std::set<Edge>> at;
     for (const std::vector<PlaneSheet>* list : {&structure_.sheets, &structure_.surface}) {
@@ -192,9 +254,38 @@ class Joiner {
       if (structure_.junctions[junction].height == 0 || edges.size() != 2) continue;
       if (sheets[*edges.begin()] == sheets[*std::next(edges.begin())]) passed.insert(junction);
     }
+    double moved = 0;
     for (Loop* loop : loops()) {
-      std::erase_if(*loop, [&](std::uint32_t k) { return passed.contains(k); });
+      const auto is_passed = [&](std::uint32_t k) { return passed.contains(k); };
+      if (std::none_of(loop->begin(), loop->end(), is_passed)) continue;
+      const auto kept = std::find_if_not(loop->begin(), loop->end(), is_passed);
+      if (kept != loop->end()) {
+        std::rotate(loop->begin(), kept, loop->end());
+        moved = std::max(moved, distance_from_chords(*loop, passed));
+      }
+      std::erase_if(*loop, is_passed);
     }
+    return moved;
+  }
+
+  /// Returns the largest distance of a passed junction from the line between those before and after it that stay.
+  /// @param loop  starts with one that stays.
+  [[nodiscard]] double distance_from_chords(const Loop& loop, const std::set<std::uint32_t>& passed) const {
+    const auto at = [&](std::size_t k) -> const Vec3d& { return structure_.junctions[loop[k % loop.size()]].at; };
+    double most = 0;
+    std::size_t from = 0;
+    for (std::size_t to = 1; to <= loop.size(); ++to) {
+      if (to < loop.size() && passed.contains(loop[to])) continue;
+      const Vec3d along = at(to) - at(from);
+      const double size = squared_length(along);
+      for (std::size_t k = from + 1; k < to; ++k) {
+        const Vec3d step = at(k) - at(from);
+        const double part = size > 0 ? std::clamp(dot(step, along) / size, 0.0, 1.0) : 0;
+        most = std::max(most, length(step - along * part));
+      }
+      from = to;
+    }
+    return most;
   }
 
   /// Leaves out junctions that no sheet uses any more.
@@ -218,12 +309,13 @@ class Joiner {
 
   PlaneStructure& structure_;
   const double tolerance_;
+  const Context& context_;
 };
 
 }  // namespace
 
-void join_close_junctions(PlaneStructure& structure, double tolerance) {
-  if (tolerance > 0) Joiner(structure, tolerance).run();
+double join_close_junctions(PlaneStructure& structure, double tolerance, const Context& context) {
+  return tolerance > 0 ? Joiner(structure, tolerance, context).run() : 0;
 }
 
 }  // namespace blum::voronoi

@@ -1,6 +1,7 @@
 // Blum: joining of junctions that only rounding keeps apart. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "blum/core/context.hpp"
 #include "voronoi/planes/plane_structure.hpp"
 
 namespace blum::voronoi {
@@ -15,6 +16,8 @@ namespace blum::voronoi {
 /// The tolerance of a junction grows with its condition, up to 8 times: where planes meet at small angles, rounding
 /// moves it further.
 /// @param tolerance  >= 0, mesh units; 0 changes nothing.
-void join_close_junctions(PlaneStructure& structure, double tolerance);
+/// @return a bound on the Hausdorff distance between the diagram before and after, mesh units.
+/// @throws Cancelled.
+double join_close_junctions(PlaneStructure& structure, double tolerance, const Context& context);
 
 }  // namespace blum::voronoi

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -77,6 +78,7 @@ class Finder {
     Vec3d normal;  ///< outward unit vector of its largest triangle
     Vec3d corner;  ///< a corner of that triangle
     double area = 0;
+    double width = 0;                       ///< smallest height of that triangle
     std::vector<std::uint32_t> neighbours;  ///< faces across edges
     std::uint32_t group = 0;                ///< its face of the largest area
   };
@@ -101,6 +103,9 @@ class Finder {
           largest = size;
           found.normal = normal_of(t);
           found.corner = place(a);
+          const double longest =
+              std::max({length(place(b) - place(a)), length(place(c) - place(b)), length(place(a) - place(c))});
+          found.width = 2 * size / longest;
         }
         for (const EdgeId edge : table_.triangle_edges()[t]) {
           for (const std::uint32_t other : sites_.triangles_of[edge.value]) {
@@ -126,36 +131,89 @@ class Finder {
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const auto& [face, found] : faces_) order.emplace_back(-found.area, face);
     std::sort(order.begin(), order.end());
-    std::map<std::uint32_t, bool> is_done;
+    std::set<std::uint32_t> done;
     bool is_any = false;
     for (const auto& [area, seed] : order) {
-      if (is_done[seed]) continue;
-      is_done[seed] = true;
-      std::vector<std::uint32_t> stack{seed};
-      while (!stack.empty()) {
-        const std::uint32_t at = stack.back();
-        stack.pop_back();
-        for (const std::uint32_t next : faces_[at].neighbours) {
-          if (is_done[next] || !is_in_plane(faces_[next], faces_[seed])) continue;
-          is_done[next] = true;
-          is_any = true;
-          faces_[next].group = seed;
-          stack.push_back(next);
-        }
-      }
+      if (done.contains(seed)) continue;
+      // The plane of a needle is known less well away from it. If a fitted plane contains more faces, it decides.
+      std::vector<std::uint32_t> group = grown(seed, done, true);
+      if (group.size() > 1 && !is_flat(group)) group = grown(seed, done, false);
+      is_any = is_any || group.size() > 1;
+      for (const std::uint32_t face : group) faces_[face].group = seed;
+      done.insert(group.begin(), group.end());
     }
     return is_any;
   }
 
-  [[nodiscard]] bool is_in_plane(const Face& face, const Face& plane) const {
+  /// Returns a face and all others that lie in its plane, reached over edges.
+  /// @param done      faces that are left out.
+  /// @param is_loose  also accept corners that lie in the plane as precisely as the face determines it.
+  [[nodiscard]] std::vector<std::uint32_t> grown(std::uint32_t seed, const std::set<std::uint32_t>& done,
+                                                 bool is_loose) {
+    std::vector<std::uint32_t> out{seed};
+    std::set<std::uint32_t> seen{seed};
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      for (const std::uint32_t next : faces_[out[k]].neighbours) {
+        if (done.contains(next) || seen.contains(next)) continue;
+        if (!is_in_plane(faces_[next], faces_[seed], is_loose)) continue;
+        seen.insert(next);
+        out.push_back(next);
+      }
+    }
+    return out;
+  }
+
+  [[nodiscard]] bool is_in_plane(const Face& face, const Face& plane, bool is_loose) const {
     constexpr double same_way = 0.9;
     if (!(blum::dot(face.normal, plane.normal) > same_way)) return false;
     return std::all_of(face.triangles.begin(), face.triangles.end(), [&](std::uint32_t t) {
       const Triangle& corners = mesh_.triangles[t];
       return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-        return std::abs(blum::dot(plane.normal, place(v) - plane.corner)) <= flatness_;
+        const Vec3d step = place(v) - plane.corner;
+        const double most = is_loose ? flatness_ * (1 + length(step) / plane.width) : flatness_;
+        return std::abs(blum::dot(plane.normal, step)) <= most;
       });
     });
+  }
+
+  /// Returns true if all corners of faces lie within `flatness` of the plane fitted to them.
+  [[nodiscard]] bool is_flat(const std::vector<std::uint32_t>& faces) {
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t face : faces) {
+      triangles.insert(triangles.end(), faces_[face].triangles.begin(), faces_[face].triangles.end());
+    }
+    return height_above(fitted(triangles), triangles) <= flatness_;
+  }
+
+  /// Plane fitted to triangles.
+  struct Fit {
+    Vec3d normal;  ///< unit vector that points inwards
+    Vec3d middle;
+  };
+
+  /// Returns the plane through the centre of triangles, across the sum of their areas as vectors.
+  [[nodiscard]] Fit fitted(const std::vector<std::uint32_t>& triangles) const {
+    Fit out;
+    double weight = 0;
+    for (const std::uint32_t t : triangles) {
+      const auto& [a, b, c] = mesh_.triangles[t];
+      const double area = length(cross(place(b) - place(a), place(c) - place(a)));
+      out.normal -= normal_of(t) * area;
+      out.middle += (place(a) + place(b) + place(c)) * (area / 3);
+      weight += area;
+    }
+    return {out.normal / length(out.normal), out.middle / weight};
+  }
+
+  /// Returns the largest distance of a corner of triangles from a plane.
+  [[nodiscard]] double height_above(const Fit& plane, const std::vector<std::uint32_t>& triangles) const {
+    double most = 0;
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        most = std::max(most, std::abs(blum::dot(plane.normal, place(v) - plane.middle)));
+      }
+    }
+    return most;
   }
 
   void set_unit() {
@@ -211,33 +269,20 @@ class Finder {
   }
 
   bool add_fitted(const std::vector<std::uint32_t>& triangles) {
-    Vec3d normal;
-    Vec3d middle;
-    double weight = 0;
-    for (const std::uint32_t t : triangles) {
-      const auto& [a, b, c] = mesh_.triangles[t];
-      const double area = length(cross(place(b) - place(a), place(c) - place(a)));
-      normal -= normal_of(t) * area;
-      middle += (place(a) + place(b) + place(c)) * (area / 3);
-      weight += area;
-    }
-    normal = normal / length(normal);
-    middle = middle / weight;
+    const Fit fit = fitted(triangles);
     constexpr double digits = 0x1p60;
+    // The middle is rounded to a small part of a unit, because the flatness may be smaller than a unit.
+    constexpr int part = 60;
     IntegerPlane plane;
     IntegerPoint at;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      plane.normal[axis] = static_cast<std::int64_t>(std::nearbyint(normal[axis] * digits));
-      const double in_unit = middle[axis] / out_.unit;
-      at[axis] = in_unit == 0 ? Integer(0) : rounded(in_unit);
+      plane.normal[axis] = static_cast<std::int64_t>(std::nearbyint(fit.normal[axis] * digits));
+      at[axis] = rounded(fit.middle[axis], exponent_ - part);
     }
     plane.offset = -dot(plane.normal, at);
+    for (Integer& value : plane.normal) value = detail::times_power(value, part);
     out_.planes.push_back(std::move(plane));
-    for (const std::uint32_t t : triangles) {
-      for (const std::uint32_t v : mesh_.triangles[t]) {
-        out_.flatness = std::max(out_.flatness, std::abs(blum::dot(normal, place(v) - middle)));
-      }
-    }
+    out_.flatness = std::max(out_.flatness, height_above(fit, triangles));
     return out_.flatness <= 2 * flatness_;
   }
 
@@ -263,25 +308,23 @@ class Finder {
         sum += (place(a) + place(b) + place(c)) * (area / 3);
         weight += area;
       }
-      out_.middle.push_back(sum / weight);
+      // The areas of needles may round to 0.
+      out_.middle.push_back(weight > 0 ? sum / weight : place(mesh_.triangles[out_.triangles[plane].front()][0]));
     }
   }
 
-  static Integer rounded(double value) {
-    const double whole = std::nearbyint(value);
-    return whole == 0 ? Integer(0) : in_units(whole, 0);
+  /// Returns value / 2^exponent, rounded.
+  static Integer rounded(double value, int exponent) {
+    if (value == 0 || last_digit(value) >= exponent) return in_units(value, exponent);
+    return in_units(std::nearbyint(std::ldexp(value, -exponent)), 0);
   }
 
   /// Returns true if no corner lies clearly outside a plane.
   [[nodiscard]] bool is_convex() const {
-    for (const IntegerPlane& plane : out_.planes) {
-      Vec3d normal;
-      for (std::size_t axis = 0; axis < 3; ++axis) normal[axis] = plane.normal[axis].convert_to<double>();
-      const double size = length(normal);
-      normal = normal / size;
-      const double offset = plane.offset.convert_to<double>() / size * out_.unit;
+    const HalfSpaces spaces(out_.planes, out_.reach, out_.unit);
+    for (HalfSpaces::Index plane = 0; plane < spaces.plane_count(); ++plane) {
       for (const std::uint32_t v : vertices_) {
-        if (blum::dot(normal, place(v)) + offset < -2 * flatness_) return false;
+        if (blum::dot(spaces.normal(plane), place(v)) + spaces.offset(plane) < -2 * flatness_) return false;
       }
     }
     return true;

@@ -12,8 +12,8 @@ constexpr double rounding = 0x1p-53;
 
 using Matrix = std::array<std::array<double, 4>, 4>;
 
-/// Returns numerator / denominator, rounded.
-double ratio(const Integer& numerator, const Integer& denominator) {
+/// Returns numerator / denominator * 2^exponent, rounded.
+double ratio(const Integer& numerator, const Integer& denominator, int exponent = 0) {
   if (numerator.is_zero()) return 0;
   Integer top = abs(numerator);
   Integer bottom = abs(denominator);
@@ -24,7 +24,7 @@ double ratio(const Integer& numerator, const Integer& denominator) {
     bottom = detail::times_power(std::move(bottom), -shift);
   }
   const Integer quotient = top / bottom;
-  const double magnitude = std::ldexp(quotient.convert_to<double>(), -shift);
+  const double magnitude = std::ldexp(quotient.convert_to<double>(), exponent - shift);
   return numerator.sign() == denominator.sign() ? magnitude : -magnitude;
 }
 
@@ -95,7 +95,7 @@ class Minors {
 }  // namespace
 
 HalfSpaces::HalfSpaces(const std::vector<IntegerPlane>& planes, const Integer& reach, double unit)
-    : count_(static_cast<Index>(planes.size())), unit_(unit), size_(reach.convert_to<double>() * unit) {
+    : count_(static_cast<Index>(planes.size())), exponent_(std::ilogb(unit)), size_(ratio(reach, 1, exponent_)) {
   for (const IntegerPlane& plane : planes) add(plane, 1);
   add({{0, 0, 0}, 0}, -1);
   const Integer far = 16 * reach;
@@ -116,7 +116,7 @@ void HalfSpaces::add(IntegerPlane plane, int weight) {
   const Integer length = root.times_power(bits);
   Row row;
   for (std::size_t k = 0; k < 3; ++k) row.normal[k] = ratio(detail::times_power(plane.normal[k], bits), length);
-  row.offset = ratio(detail::times_power(plane.offset, bits), length) * unit_;
+  row.offset = ratio(detail::times_power(plane.offset, bits), length, exponent_);
   row.weight = weight;
   rows_.push_back(row);
   exact_.push_back({std::move(plane), weight, std::move(root)});
@@ -194,8 +194,8 @@ PlacedCorner HalfSpaces::place_exactly(const Base& base) const {
   const Integer all = det(5);
   PlacedCorner out = place(base);
   if (all.is_zero()) return out;
-  for (std::size_t k = 0; k < 3; ++k) out.at[k] = ratio(det(k), all) * unit_;
-  out.height = ratio(det(3), all) * unit_;
+  for (std::size_t k = 0; k < 3; ++k) out.at[k] = ratio(det(k), all, exponent_);
+  out.height = ratio(det(3), all, exponent_);
   out.error = 2 * rounding * std::max({std::abs(out.at.x), std::abs(out.at.y), std::abs(out.at.z), out.height});
   return out;
 }

@@ -41,6 +41,7 @@ class HalfSpaces {
 
   /// @param planes  facing inwards, in units of `unit`, relative to the origin.
   /// @param reach   a bound on the coordinates of all vertices, in the same units.
+  /// @param unit    a power of two, mesh units.
   HalfSpaces(const std::vector<IntegerPlane>& planes, const Integer& reach, double unit);
 
   [[nodiscard]] Index plane_count() const { return count_; }
@@ -73,7 +74,8 @@ class HalfSpaces {
   [[nodiscard]] int exact_side(const Base& base, Index of) const;
 
   Index count_ = 0;
-  double unit_ = 1, size_ = 0;
+  int exponent_ = 0;  ///< of the unit, a power of two
+  double size_ = 0;
   std::vector<Row> rows_;
   std::vector<ExactRow> exact_;
 };

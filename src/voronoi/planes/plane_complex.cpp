@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -77,30 +78,88 @@ std::int64_t euler_number(const PlaneStructure& structure) {
          static_cast<std::int64_t>(edges.size());
 }
 
-/// Returns true if a structure is that of planes that divide a ball into regions, one for each plane. Each plane then
-/// has one polygon. The union of all polygons has the Euler number 1 plus the number of regions.
-bool is_division(const PlaneStructure& structure, std::size_t planes) {
-  return structure.surface.size() == planes && euler_number(structure) == 1 + static_cast<std::int64_t>(planes);
+/// Returns true if polygons form a sphere: each edge belongs to two, and the Euler number is 2.
+bool is_sphere(const std::vector<const PlaneSheet*>& polygons) {
+  std::vector<std::uint32_t> corners;
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const PlaneSheet* polygon : polygons) {
+    const std::vector<std::uint32_t>& loop = polygon->junctions;
+    if (loop.size() < 3) return false;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const auto [low, high] = std::minmax(loop[k], loop[(k + 1) % loop.size()]);
+      edges.push_back({low, high});
+      corners.push_back(loop[k]);
+    }
+  }
+  const std::size_t sides = edges.size();
+  std::sort(edges.begin(), edges.end());
+  if (sides % 2 != 0) return false;
+  for (std::size_t k = 0; k < sides; k += 2) {
+    if (edges[k] != edges[k + 1]) return false;
+  }
+  detail::sort_unique(edges);
+  detail::sort_unique(corners);
+  return 2 * edges.size() == sides && corners.size() + polygons.size() == edges.size() + 2;
 }
+
+/// Returns true if a structure is that of planes that divide a ball into regions, one for each plane. Each plane then
+/// has one polygon, and the border of its region is a sphere. The union of all polygons has the Euler number 1 plus the
+/// number of regions.
+bool is_division(const PlaneStructure& structure, std::size_t planes) {
+  if (structure.surface.size() != planes) return false;
+  if (euler_number(structure) != 1 + static_cast<std::int64_t>(planes)) return false;
+  std::vector<std::vector<const PlaneSheet*>> borders(planes);
+  for (std::size_t plane = 0; plane < planes; ++plane) {
+    if (structure.surface[plane].first != plane) return false;
+    borders[plane].push_back(&structure.surface[plane]);
+  }
+  for (const PlaneSheet& sheet : structure.sheets) {
+    borders[sheet.first].push_back(&sheet);
+    borders[sheet.second].push_back(&sheet);
+  }
+  return std::all_of(borders.begin(), borders.end(), is_sphere);
+}
+
+/// How parts of a structure were joined.
+struct Joined {
+  double distance = 0;  ///< within which parts were joined; 0 if none were
+  double moved = 0;     ///< bound on how far the structure has moved
+};
 
 /// Joins parts of a structure that are close together. If the result has another topology, more distant parts are
 /// joined, too. If that does not help, nothing is joined.
-/// @return the distance within which parts were joined; 0 if none were.
-double join(PlaneStructure& structure, double tolerance) {
+Joined join(PlaneStructure& structure, double tolerance, const Context& context) {
   const std::size_t planes = structure.surface.size();
   double size = 0;
   for (const PlaneStructure::Junction& junction : structure.junctions) size = std::max(size, length(junction.at));
-  constexpr double most = 1e-4;  // fraction of the size
+  // Fractions of the size. The caller may ask for a larger distance than the search would try.
+  constexpr double most_searched = 1e-4;
+  constexpr double most_asked = 1e-2;
+  const double most = std::max(most_searched * size, std::min(tolerance, most_asked * size));
   constexpr double step = 8;
-  for (double distance = tolerance; distance > 0 && distance <= most * size; distance *= step) {
+  for (double distance = tolerance; distance > 0 && distance <= most; distance *= step) {
     PlaneStructure joined = structure;
-    join_close_junctions(joined, distance);
-    if (joined.junctions.size() == structure.junctions.size()) return 0;
+    const double moved = join_close_junctions(joined, distance, context);
+    if (joined.junctions.size() == structure.junctions.size()) return {};
     if (!is_division(joined, planes)) continue;
     structure = std::move(joined);
-    return distance;
+    return {distance, moved};
   }
-  return 0;
+  return {};
+}
+
+/// Returns a component with its diagram, or nothing if it is not convex. If joined faces do not form a convex
+/// polyhedron, its triangles count as given.
+std::optional<ConvexBody> convex_body(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                                      std::span<const std::uint32_t> component, double flatness,
+                                      const Context& context) {
+  std::optional<ConvexFaces> faces = convex_faces(mesh, table, sites, component, flatness);
+  if (faces) {
+    std::optional<PlaneStructure> structure = plane_structure(*faces, context);
+    if (structure) return ConvexBody{std::move(*faces), std::move(*structure)};
+  }
+  if (flatness == 0) return std::nullopt;
+  return convex_body(mesh, table, sites, component, 0, context);
 }
 
 class Assembly {
@@ -283,13 +342,13 @@ std::optional<ConvexBodies> convex_bodies(const MeshView& mesh, const SiteTable&
   if (is_clearly_reflex(mesh, sites, flat)) return std::nullopt;
   ConvexBodies out;
   for (const std::vector<std::uint32_t>& component : components(mesh, sites)) {
-    std::optional<ConvexFaces> faces = convex_faces(mesh, table, sites, component, flat);
-    if (!faces) return std::nullopt;
-    std::optional<PlaneStructure> structure = plane_structure(*faces, context);
-    if (!structure) return std::nullopt;
-    out.flatness = std::max(out.flatness, faces->flatness);
-    out.joined = std::max(out.joined, join(*structure, join_factor * flat));
-    out.bodies.push_back({std::move(*faces), std::move(*structure)});
+    std::optional<ConvexBody> body = convex_body(mesh, table, sites, component, flat, context);
+    if (!body) return std::nullopt;
+    const Joined joined = join(body->structure, join_factor * flat, context);
+    out.flatness = std::max(out.flatness, body->faces.flatness);
+    out.joined = std::max(out.joined, joined.distance);
+    out.moved = std::max(out.moved, joined.moved);
+    out.bodies.push_back(std::move(*body));
   }
   return out;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <numeric>
+#include <stop_token>
 #include <utility>
 
 #include "blum/core/gather.hpp"
@@ -23,13 +23,19 @@ struct RegionVertex {
 /// The region of one plane.
 class Region {
  public:
-  Region(const HalfSpaces& spaces, const ConvexFaces& faces, Index plane) : spaces_(spaces), plane_(plane) {
+  /// @param cancel  after a request to stop, the region is not complete.
+  Region(const HalfSpaces& spaces, const ConvexFaces& faces, Index plane, const std::stop_token& cancel)
+      : spaces_(spaces), plane_(plane) {
     for (std::uint32_t k = 0; k < 8; ++k) {
       add({plane_, spaces_.box_side(k & 1U), spaces_.box_side(2 + (k >> 1U & 1U)),
            spaces_.box_side(4 + (k >> 2U & 1U))});
     }
     cut(spaces_.floor());
-    for (const Index other : order(faces)) cut(other);
+    for (const Index other : order(faces)) {
+      // In degenerate solids, a region may take longer than a caller may wait.
+      if (cancel.stop_requested()) return;
+      cut(other);
+    }
   }
 
   [[nodiscard]] const std::vector<RegionVertex>& vertices() const { return vertices_; }
@@ -48,8 +54,10 @@ class Region {
     for (Index k = 0; k < height.size(); ++k) {
       height[k] =
           (dot(spaces_.normal(k), middle) + spaces_.offset(k)) / (1 - dot(spaces_.normal(k), spaces_.normal(plane_)));
+      // Planes that doubles take for parallel have no height. An order needs a number.
+      if (std::isnan(height[k])) height[k] = HUGE_VAL;
     }
-    for (const Index k : faces.neighbours[plane_]) height[k] -= HUGE_VAL;
+    for (const Index k : faces.neighbours[plane_]) height[k] = -HUGE_VAL;
     std::vector<Index> out;
     for (Index k = 0; k < height.size(); ++k) {
       if (k != plane_) out.push_back(k);
@@ -147,7 +155,7 @@ std::vector<PlaneCorner> plane_corners(const HalfSpaces& spaces, const ConvexFac
   // An empty list of planes marks a region that is not bounded.
   std::vector<PlaneCorner> all = detail::gather<PlaneCorner>(
       context, spaces.plane_count(), 1, "regions", [&](std::size_t plane, std::vector<PlaneCorner>& out) {
-        const Region region(spaces, faces, static_cast<Index>(plane));
+        const Region region(spaces, faces, static_cast<Index>(plane), context.cancel);
         if (!region.is_bounded()) {
           out.emplace_back();
           return;
@@ -157,6 +165,7 @@ std::vector<PlaneCorner> plane_corners(const HalfSpaces& spaces, const ConvexFac
           if (vertex.corner.planes.front() == plane) out.push_back(vertex.corner);
         }
       });
+  throw_if_cancelled(context);
   is_bounded = std::none_of(all.begin(), all.end(), [](const PlaneCorner& corner) { return corner.planes.empty(); });
   if (!is_bounded) return {};
   std::sort(all.begin(), all.end(), [](const PlaneCorner& a, const PlaneCorner& b) { return a.planes < b.planes; });

@@ -5,14 +5,20 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
+#include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/orient3d.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/solid/solid.hpp"
@@ -310,6 +316,202 @@ TEST(ConvexVoronoi, BodiesHaveTheirOwnDiagrams) {
   EXPECT_TRUE(found.report.exact);
   EXPECT_EQ(found.report.found, (BettiNumbers{2, 0, 0}));
   EXPECT_EQ(counts_of(voronoi_graph(found.complex)), (Counts{25, 18, 19}));
+}
+
+/// Returns the largest distance of the corners and middles of triangles from another complex.
+double furthest(const Complex& from, const Complex& other) {
+  double most = 0;
+  for (const auto& [a, b, c] : from.triangles) {
+    const auto& p = from.positions;
+    for (const Vec3d& q : {p[a], (p[a] + p[b] + p[c]) / 3.0}) {
+      double least = HUGE_VAL;
+      for (const auto& [d, e, f] : other.triangles) {
+        const std::array<Vec3d, 3> corners{other.positions[d], other.positions[e], other.positions[f]};
+        least = std::min(least, length(closest_point_on_triangle(q, corners) - q));
+      }
+      most = std::max(most, least);
+    }
+  }
+  return most;
+}
+
+/// Box whose upper side is an arch of strips.
+TriangleMesh arch(std::uint32_t strips, double height) {
+  TriangleMesh mesh;
+  for (const double y : {0.0, 1.0}) {
+    for (std::uint32_t k = 0; k <= strips; ++k) {
+      const double x = 2.0 * k / strips - 1;
+      mesh.vertices.push_back({x, y, 1 + height * (1 - x * x)});
+    }
+  }
+  const std::uint32_t row = strips + 1;
+  const std::uint32_t base = 2 * row;
+  for (const double y : {0.0, 1.0}) {
+    for (const double x : {-1.0, 1.0}) mesh.vertices.push_back({x, y, 0});
+  }
+  for (std::uint32_t k = 0; k < strips; ++k) {
+    mesh.triangles.push_back({k, k + 1, row + k + 1});
+    mesh.triangles.push_back({k, row + k + 1, row + k});
+    mesh.triangles.push_back({base, k + 1, k});
+    mesh.triangles.push_back({base + 2, row + k, row + k + 1});
+  }
+  const std::vector<Triangle> sides{
+      {base, base + 1, strips},   {base + 2, row + strips, base + 3}, {base, 0, row},
+      {base, row, base + 2},      {base + 1, base + 3, row + strips}, {base + 1, row + strips, strips},
+      {base, base + 2, base + 3}, {base, base + 3, base + 1}};
+  mesh.triangles.insert(mesh.triangles.end(), sides.begin(), sides.end());
+  return mesh;
+}
+
+/// Double cone over a regular polygon.
+TriangleMesh double_cone(std::uint32_t sides) {
+  TriangleMesh mesh;
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / sides;
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  mesh.vertices.push_back({0, 0, 1});
+  mesh.vertices.push_back({0, 0, -1});
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    mesh.triangles.push_back({k, (k + 1) % sides, sides});
+    mesh.triangles.push_back({(k + 1) % sides, k, sides + 1});
+  }
+  return mesh;
+}
+
+/// Prism over a regular polygon. Its ends are fans of needles around a corner.
+TriangleMesh fan_prism(std::uint32_t sides) {
+  TriangleMesh mesh;
+  for (const double z : {0.0, 1.0}) {
+    for (std::uint32_t k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      mesh.vertices.push_back({std::cos(angle), std::sin(angle), z});
+    }
+  }
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const std::uint32_t next = (k + 1) % sides;
+    mesh.triangles.push_back({k, next, sides + next});
+    mesh.triangles.push_back({k, sides + next, sides + k});
+    if (k == 0 || next == 0) continue;
+    mesh.triangles.push_back({0, next, k});
+    mesh.triangles.push_back({sides, sides + k, sides + next});
+  }
+  return mesh;
+}
+
+/// Ball with rings of planes that each touch a common point of the axis.
+TriangleMesh ringed_ball(std::uint32_t rings, std::uint32_t sides) {
+  TriangleMesh mesh;
+  mesh.vertices.push_back({0, 0, 1});
+  for (std::uint32_t ring = 1; ring < rings; ++ring) {
+    const double down = std::numbers::pi * ring / rings;
+    for (std::uint32_t k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      mesh.vertices.push_back({std::sin(down) * std::cos(angle), std::sin(down) * std::sin(angle), std::cos(down)});
+    }
+  }
+  const auto last = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back({0, 0, -1});
+  const auto at = [&](std::uint32_t ring, std::uint32_t k) { return 1 + (ring - 1) * sides + k % sides; };
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    mesh.triangles.push_back({0, at(1, k), at(1, k + 1)});
+    mesh.triangles.push_back({last, at(rings - 1, k + 1), at(rings - 1, k)});
+    for (std::uint32_t ring = 1; ring + 1 < rings; ++ring) {
+      mesh.triangles.push_back({at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)});
+      mesh.triangles.push_back({at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)});
+    }
+  }
+  return mesh;
+}
+
+/// The ends of a rounded prism consist of needles, whose planes are not known well at the other side.
+TEST(ConvexVoronoi, RoundedFansOfNeedlesAreOneFace) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const VoronoiComplex found = walls_of(test::in_single_precision(turned(fan_prism(200), seed)));
+    EXPECT_TRUE(found.report.exact);
+    EXPECT_TRUE(found.report.certified);
+    EXPECT_EQ(found.report.faces, 202U);
+    EXPECT_EQ(counts_of(voronoi_graph(found.complex)), (Counts{601, 600, 600}));
+  }
+}
+
+/// A joined diagram may have the Euler number of a division without being one.
+TEST(ConvexVoronoi, JoinedDiagramsDivideTheSolid) {
+  EXPECT_TRUE(walls_of(ringed_ball(20, 40)).report.certified);
+}
+
+/// Chains of close junctions move further than each pair is apart.
+TEST(ConvexVoronoi, TheDistanceBoundIncludesHowFarJunctionsMove) {
+  std::size_t checked = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const TriangleMesh mesh = random_hull(seed, 60);
+    const VoronoiComplex exact = walls_of(mesh, 0.0);
+    const VoronoiComplex joined = walls_of(mesh, 1e-5);
+    if (joined.report.flatness > 0 || joined.report.joined == 0) continue;
+    ++checked;
+    EXPECT_LE(furthest(exact.complex, joined.complex), joined.report.hausdorff_bound);
+    EXPECT_LE(furthest(joined.complex, exact.complex), joined.report.hausdorff_bound);
+  }
+  EXPECT_GE(checked, 3U);
+}
+
+/// The rounding error of the largest coordinate exceeds the rest of the solid: its triangles count as given.
+TEST(ConvexVoronoi, ConvexSolidsThatJoiningWouldFlattenKeepTheirTriangles) {
+  TriangleMesh mesh = random_hull(4, 20);
+  for (Vec3d& v : mesh.vertices) v = {v.x * 0x1p66, v.y, v.z * 0x1p-66};
+  const VoronoiComplex found = walls_of(mesh);
+  EXPECT_TRUE(found.report.exact);
+  EXPECT_TRUE(found.report.certified);
+  EXPECT_EQ(found.report.faces, mesh.triangles.size());
+}
+
+/// In units of the smallest coordinate, the others exceed the range of doubles.
+TEST(ConvexVoronoi, TinyCoordinatesKeepPositionsFinite) {
+  for (const std::optional<double> flatness : {std::optional<double>(), std::optional(1e-12)}) {
+    TriangleMesh mesh = make_box();
+    const Vec3d corner = mesh.vertices[0];
+    for (Vec3d& v : mesh.vertices) v = v - corner;
+    mesh.vertices[0] = {1e-300, 1e-300, 1e-300};
+    const VoronoiComplex found = walls_of(mesh, flatness);
+    for (const Vec3d& p : found.complex.positions) EXPECT_TRUE(is_finite(p));
+    EXPECT_EQ(counts_of(voronoi_graph(found.complex)), (Counts{12, 8, 9}));
+  }
+}
+
+/// Doubles take planes at such angles for parallel; their order must still be one.
+TEST(ConvexVoronoi, AlmostFlatArchesHaveAllSheets) {
+  constexpr std::uint32_t strips = 40;
+  for (const double bend : {1e-7, 1e-9, 1e-11}) {
+    SCOPED_TRACE(bend);
+    const VoronoiComplex found = walls_of(arch(strips, bend), 0.0);
+    EXPECT_TRUE(found.report.exact);
+    EXPECT_TRUE(found.report.certified);
+    EXPECT_EQ(counts_of(voronoi_graph(found.complex)), (Counts{148, 165, 147}));
+  }
+}
+
+/// Junctions within 8 times the flatness are one, even if the default would not join as much.
+TEST(ConvexVoronoi, AGivenFlatnessJoinsJunctions) {
+  const VoronoiComplex found = walls_of(turned(make_box(), 2), 1e-3);
+  EXPECT_EQ(found.report.joined, 8e-3);
+  EXPECT_EQ(counts_of(voronoi_graph(found.complex)), (Counts{12, 8, 9}));
+}
+
+/// In a degenerate solid, the region of one plane may take seconds.
+TEST(ConvexVoronoi, RequestsToStopEndTheWork) {
+  std::stop_source stop;
+  std::chrono::steady_clock::time_point asked;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    asked = std::chrono::steady_clock::now();
+    stop.request_stop();
+  });
+  EXPECT_THROW((void)voronoi_complex(double_cone(1000), {}, {.cancel = stop.get_token()}), Cancelled);
+  const auto ended = std::chrono::steady_clock::now();
+  later.join();
+  EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), 0.2);
 }
 
 TEST(ConvexVoronoi, ThreadsChangeNothing) {
