@@ -38,8 +38,9 @@ struct ConvexFaces {
 /// Returns the planes of one component of a mesh, or nothing if it is not a convex polyhedron.
 ///
 /// Faces that share an edge become one plane if they face the same way. Their corners must lie within `flatness` of the
-/// plane of the largest one. If faces were joined, their plane is fitted to their corners; corners of the component
-/// may then lie up to twice `flatness` outside planes. Otherwise, everything is exact.
+/// plane of the largest one, or of the plane fitted to all. If faces were joined, their plane is fitted to their
+/// corners; corners of the component may then lie up to twice `flatness` outside planes. Otherwise, everything is
+/// exact.
 /// @param component  triangles of the component, ascending.
 /// @param flatness   >= 0, mesh units.
 [[nodiscard]] std::optional<ConvexFaces> convex_faces(const MeshView& mesh, const SiteTable& table,
