@@ -157,7 +157,8 @@ struct VoronoiReport {
   BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};     ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
-  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets.
+  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact, it
+  /// covers rounding and joined junctions, and the diagram is that of the planes, within `flatness` of the corners.
   double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
