@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <variant>
 #include <vector>
@@ -47,6 +48,15 @@ namespace blum::formats {
 
 namespace fs = std::filesystem;
 using volume_io::ByteSource;
+
+/// Returns the format of a file by its name, or by its first bytes if the name has no known extension.
+template <class Format>
+[[nodiscard]] std::optional<Format> format_of_file(const fs::path& path) {
+  std::optional<Format> format = Format::by_name(path);
+  std::error_code ignored;
+  if (!format && fs::exists(path, ignored)) format = Format::by_head(read_file_head(path));
+  return format;
+}
 
 /// Tests of the first bytes of a file.
 struct Sniffer {

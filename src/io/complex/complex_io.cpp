@@ -6,7 +6,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
@@ -108,14 +107,6 @@ ComplexFile checked(const std::string& name, Read read) {
   }
 }
 
-/// Returns the format of a file by its name, or by its first bytes if the name has no known extension.
-std::optional<ComplexFormat> format_of_file(const std::filesystem::path& path) {
-  std::optional<ComplexFormat> format = ComplexFormat::by_name(path);
-  std::error_code ignored;
-  if (!format && std::filesystem::exists(path, ignored)) format = ComplexFormat::by_head(read_file_head(path));
-  return format;
-}
-
 }  // namespace
 
 void write_complex(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
@@ -129,7 +120,7 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 }
 
 ComplexFile read_complex(const std::filesystem::path& path) {
-  std::optional<ComplexFormat> format = format_of_file(path);
+  std::optional<ComplexFormat> format = formats::format_of_file<ComplexFormat>(path);
   if (!format) format = ComplexFormat::of(path);  // before the file is opened, for its error
   const formats::ComplexCode& code = formats::code_of(*format);
   return checked(path.string(), [&] {
@@ -140,7 +131,7 @@ ComplexFile read_complex(const std::filesystem::path& path) {
 }
 
 bool may_hold_columns(const std::filesystem::path& path) {
-  const auto format = format_of_file(path);
+  const auto format = formats::format_of_file<ComplexFormat>(path);
   return format && formats::code_of(*format).holds_columns;
 }
 

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
@@ -54,9 +53,7 @@ void write_field(const std::filesystem::path& path, const Field& field, const Fi
 }
 
 Field read_field(const std::filesystem::path& path) {
-  std::optional<FieldFormat> format = FieldFormat::by_name(path);
-  std::error_code ignored;
-  if (!format && std::filesystem::exists(path, ignored)) format = FieldFormat::by_head(read_file_head(path));
+  std::optional<FieldFormat> format = formats::format_of_file<FieldFormat>(path);
   if (!format) format = FieldFormat::of(path);  // before the file is opened, for its error
   return read(volume_io::FileSource(path), *format, path);
 }
