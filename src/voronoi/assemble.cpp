@@ -33,9 +33,7 @@ struct WallPoint {
 
 /// Returns the angle in degrees between the directions from `at` to two other points.
 double separation_angle(const Vec3d& at, const Vec3d& first, const Vec3d& second) {
-  const Vec3d a = first - at;
-  const Vec3d b = second - at;
-  return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
+  return degrees_between(first - at, second - at);
 }
 
 /// @param among  labels that include all that may be closest.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 #include "blum/geometry/closest_point.hpp"
 #include "voronoi/dual_cone.hpp"
@@ -83,6 +84,10 @@ Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   }
   return unit({difference_of_products(u[1], v[2], u[2], v[1]), difference_of_products(u[2], v[0], u[0], v[2]),
                difference_of_products(u[0], v[1], u[1], v[0])});
+}
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
 }
 
 Quadratic PlacedLabel::along(const Vec3d& q, std::size_t axis) const {

@@ -24,6 +24,9 @@ namespace blum::voronoi {
 /// Returns the unit vector along (b - a) x (c - a). It is accurate even if the three points are nearly collinear.
 [[nodiscard]] Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
+/// Returns the angle between two vectors in degrees.
+[[nodiscard]] double degrees_between(const Vec3d& a, const Vec3d& b);
+
 /// Index of a label in SiteLabels::all(). Triangles come first, so their labels have the indices of the triangles.
 using LabelIndex = std::uint32_t;
 

@@ -18,16 +18,7 @@ namespace blum::voronoi {
 namespace {
 
 using Loop = std::vector<std::uint32_t>;
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-Edge sorted(std::uint32_t a, std::uint32_t b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
-template <class Visit>
-void each_edge(const Loop& loop, const Visit& visit) {
-  for (std::size_t k = 0; k < loop.size(); ++k) visit(loop[k], loop[(k + 1) % loop.size()]);
-}
+using Edge = JunctionEdge;
 
 constexpr std::size_t junctions_per_range = 64;
 
@@ -146,7 +137,7 @@ class Joiner {
     std::vector<std::uint32_t> used;
     for (const Loop* loop : loops()) {
       each_edge(*loop, [&](std::uint32_t a, std::uint32_t b) {
-        if (a != b) edges.push_back(sorted(a, b));
+        if (a != b) edges.push_back(sorted_edge(a, b));
         used.push_back(a);
       });
     }
@@ -169,7 +160,7 @@ class Joiner {
       each_edge(*loop, [&](std::uint32_t a, std::uint32_t b) {
         if (a == b) return;
         divided.push_back(a);
-        const auto found = passed.find(sorted(a, b));
+        const auto found = passed.find(sorted_edge(a, b));
         if (found == passed.end()) return;
         const Loop& between = found->second;
         if (a < b) divided.insert(divided.end(), between.begin(), between.end());
@@ -241,7 +232,7 @@ class Joiner {
     for (const std::vector<PlaneSheet>* list : {&structure_.sheets, &structure_.surface}) {
       for (const PlaneSheet& sheet : *list) {
         each_edge(sheet.junctions, [&](std::uint32_t a, std::uint32_t b) {
-          const Edge edge = sorted(a, b);
+          const Edge edge = sorted_edge(a, b);
           sheets[edge].emplace_back(sheet.first, sheet.second);
           at[a].insert(edge);
           at[b].insert(edge);

@@ -191,18 +191,30 @@ class Finder {
     Vec3d middle;
   };
 
-  /// Returns the plane through the centre of triangles, across the sum of their areas as vectors.
-  [[nodiscard]] Fit fitted(const std::vector<std::uint32_t>& triangles) const {
-    Fit out;
+  [[nodiscard]] double twice_area(std::uint32_t t) const {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    return length(cross(place(b) - place(a), place(c) - place(a)));
+  }
+
+  /// Returns the centre of triangles by area.
+  [[nodiscard]] Vec3d centre_of(const std::vector<std::uint32_t>& triangles) const {
+    Vec3d sum;
     double weight = 0;
     for (const std::uint32_t t : triangles) {
       const auto& [a, b, c] = mesh_.triangles[t];
-      const double area = length(cross(place(b) - place(a), place(c) - place(a)));
-      out.normal -= normal_of(t) * area;
-      out.middle += (place(a) + place(b) + place(c)) * (area / 3);
+      const double area = twice_area(t);
+      sum += (place(a) + place(b) + place(c)) * (area / 3);
       weight += area;
     }
-    return {out.normal / length(out.normal), out.middle / weight};
+    // The areas of needles may round to 0.
+    return weight > 0 ? sum / weight : place(mesh_.triangles[triangles.front()][0]);
+  }
+
+  /// Returns the plane through the centre of triangles, across the sum of their areas as vectors.
+  [[nodiscard]] Fit fitted(const std::vector<std::uint32_t>& triangles) const {
+    Vec3d normal;
+    for (const std::uint32_t t : triangles) normal -= normal_of(t) * twice_area(t);
+    return {normal / length(normal), centre_of(triangles)};
   }
 
   /// Returns the largest distance of a corner of triangles from a plane.
@@ -300,16 +312,7 @@ class Finder {
       std::vector<std::uint32_t>& list = out_.neighbours[plane];
       detail::sort_unique(list);
       std::erase(list, plane);
-      Vec3d sum;
-      double weight = 0;
-      for (const std::uint32_t t : out_.triangles[plane]) {
-        const auto& [a, b, c] = mesh_.triangles[t];
-        const double area = length(cross(place(b) - place(a), place(c) - place(a)));
-        sum += (place(a) + place(b) + place(c)) * (area / 3);
-        weight += area;
-      }
-      // The areas of needles may round to 0.
-      out_.middle.push_back(weight > 0 ? sum / weight : place(mesh_.triangles[out_.triangles[plane].front()][0]));
+      out_.middle.push_back(centre_of(out_.triangles[plane]));
     }
   }
 

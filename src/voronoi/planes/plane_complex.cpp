@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/sort_unique.hpp"
-#include "blum/core/union_find.hpp"
 #include "blum/geometry/closest_point.hpp"
+#include "blum/geometry/triangle_components.hpp"
 #include "voronoi/label_geometry.hpp"
 #include "voronoi/planes/close_junctions.hpp"
 
@@ -24,21 +22,10 @@ namespace {
 constexpr double join_factor = 8;
 
 /// Returns the triangles of each component, in the order of their smallest triangles.
-std::vector<std::vector<std::uint32_t>> components(const MeshView& mesh, const PolyhedronSites& sites) {
-  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-  detail::UnionFind joined(count);
-  for (const auto& [first, second] : sites.triangles_of) joined.join(first, second);
-  constexpr std::uint32_t none = UINT32_MAX;
-  std::vector<std::uint32_t> number(count, none);
-  std::vector<std::vector<std::uint32_t>> out;
-  for (std::uint32_t t = 0; t < count; ++t) {
-    std::uint32_t& own = number[joined.find(t)];
-    if (own == none) {
-      own = static_cast<std::uint32_t>(out.size());
-      out.emplace_back();
-    }
-    out[own].push_back(t);
-  }
+std::vector<std::vector<std::uint32_t>> components(const MeshView& mesh, const SiteTable& table) {
+  const detail::SurfaceComponents found = detail::find_components(mesh, table, detail::tally_edges(mesh, table));
+  std::vector<std::vector<std::uint32_t>> out(found.count);
+  for (std::uint32_t t = 0; t < found.of_triangle.size(); ++t) out[found.of_triangle[t]].push_back(t);
   return out;
 }
 
@@ -57,20 +44,12 @@ bool is_clearly_reflex(const MeshView& mesh, const PolyhedronSites& sites, doubl
   });
 }
 
-double angle_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
-}
-
 /// Returns V - E + F of the sheets and the surface.
 std::int64_t euler_number(const PlaneStructure& structure) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<JunctionEdge> edges;
   for (const std::vector<PlaneSheet>* list : {&structure.sheets, &structure.surface}) {
     for (const PlaneSheet& sheet : *list) {
-      const std::vector<std::uint32_t>& loop = sheet.junctions;
-      for (std::size_t k = 0; k < loop.size(); ++k) {
-        const auto [low, high] = std::minmax(loop[k], loop[(k + 1) % loop.size()]);
-        edges.push_back({low, high});
-      }
+      each_edge(sheet.junctions, [&](std::uint32_t a, std::uint32_t b) { edges.push_back(sorted_edge(a, b)); });
     }
   }
   detail::sort_unique(edges);
@@ -81,15 +60,13 @@ std::int64_t euler_number(const PlaneStructure& structure) {
 /// Returns true if polygons form a sphere: each edge belongs to two, and the Euler number is 2.
 bool is_sphere(const std::vector<const PlaneSheet*>& polygons) {
   std::vector<std::uint32_t> corners;
-  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<JunctionEdge> edges;
   for (const PlaneSheet* polygon : polygons) {
-    const std::vector<std::uint32_t>& loop = polygon->junctions;
-    if (loop.size() < 3) return false;
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const auto [low, high] = std::minmax(loop[k], loop[(k + 1) % loop.size()]);
-      edges.push_back({low, high});
-      corners.push_back(loop[k]);
-    }
+    if (polygon->junctions.size() < 3) return false;
+    each_edge(polygon->junctions, [&](std::uint32_t a, std::uint32_t b) {
+      edges.push_back(sorted_edge(a, b));
+      corners.push_back(a);
+    });
   }
   const std::size_t sides = edges.size();
   std::sort(edges.begin(), edges.end());
@@ -175,7 +152,7 @@ class Assembly {
     for (const PlaneSheet& sheet : body.structure.sheets) {
       const std::array between{static_cast<std::int32_t>(body.faces.site[sheet.first]),
                                static_cast<std::int32_t>(body.faces.site[sheet.second])};
-      const double angle = angle_between(normal(sheet.first), normal(sheet.second));
+      const double angle = degrees_between(normal(sheet.first), normal(sheet.second));
       add_polygon(sheet, {sheet.first, sheet.second}, first, between, angle);
     }
     if (part_ != VoronoiPart::all) return;
@@ -225,7 +202,7 @@ class Assembly {
           widest = {planes[a], planes[b]};
         }
       }
-      if (planes.size() > 1) out.angle = angle_between(normal(widest[0]), normal(widest[1]));
+      if (planes.size() > 1) out.angle = degrees_between(normal(widest[0]), normal(widest[1]));
     }
     for (const std::size_t which : {0U, 1U}) {
       out.footprints[which] = out.at - normal(widest[which]) * height;
@@ -341,7 +318,7 @@ std::optional<ConvexBodies> convex_bodies(const MeshView& mesh, const SiteTable&
   const double flat = flatness ? *flatness : rounding_of_coordinates(mesh);
   if (is_clearly_reflex(mesh, sites, flat)) return std::nullopt;
   ConvexBodies out;
-  for (const std::vector<std::uint32_t>& component : components(mesh, sites)) {
+  for (const std::vector<std::uint32_t>& component : components(mesh, table)) {
     std::optional<ConvexBody> body = convex_body(mesh, table, sites, component, flat, context);
     if (!body) return std::nullopt;
     const Joined joined = join(body->structure, join_factor * flat, context);

@@ -1,5 +1,4 @@
-// Blum: the Voronoi diagram inside convex polyhedra as a complex of planar polygons. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: Voronoi diagrams of convex polyhedra as complexes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>

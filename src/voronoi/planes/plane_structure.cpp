@@ -1,7 +1,6 @@
 #include "voronoi/planes/plane_structure.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <map>
 #include <utility>

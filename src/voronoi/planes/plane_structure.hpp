@@ -1,8 +1,11 @@
 // Blum: sheets, seams and junctions between the regions of planes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -32,6 +35,19 @@ struct PlaneStructure {
   std::vector<PlaneSheet> sheets;   ///< ascending by their planes
   std::vector<PlaneSheet> surface;  ///< one polygon on each plane
 };
+
+/// Two junctions, the smaller one first.
+using JunctionEdge = std::pair<std::uint32_t, std::uint32_t>;
+
+[[nodiscard]] inline JunctionEdge sorted_edge(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Calls visit(a, b) for each two successive junctions of a loop.
+template <class Visit>
+void each_edge(const std::vector<std::uint32_t>& loop, const Visit& visit) {
+  for (std::size_t k = 0; k < loop.size(); ++k) visit(loop[k], loop[(k + 1) % loop.size()]);
+}
 
 /// Returns the diagram of planes, or nothing if they are not the faces of a bounded convex polyhedron, each with a
 /// polygon of its own. The structure is exact; coordinates are rounded once.
