@@ -2,16 +2,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <numeric>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/ear_clipping.hpp"
-#include "blum/geometry/orient2d.hpp"
+#include "blum/geometry/plane_polygon.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/shapes/generators.hpp"
 #include "shapes/generator_parts.hpp"
@@ -19,46 +19,8 @@
 namespace blum::detail {
 namespace {
 
-/// A polygon with holes: a list of loops, each of consecutive points. The outline comes first, counter-clockwise. Then
-/// come the holes, clockwise.
-struct Polygon {
-  std::vector<std::array<double, 2>> points;
-  std::vector<std::uint32_t> loop_starts;  ///< index of the first point of each loop; 0 for the outline
-
-  /// Adds the outline or a hole. A loop in the wrong direction is reversed.
-  /// @throws InvalidOption if the loop has fewer than three points or no area, or if the polygon would have more than
-  /// 20,000 points.
-  void add_loop(std::span<const std::array<double, 2>> loop);
-  [[nodiscard]] std::uint32_t loop_end(std::size_t loop) const;
-};
-
-using Point = std::array<double, 2>;
-
-double doubled_area(std::span<const Point> loop) {
-  double sum = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Point& a = loop[k];
-    const Point& b = loop[(k + 1) % loop.size()];
-    sum += (a[0] - loop[0][0]) * (b[1] - loop[0][1]) - (a[1] - loop[0][1]) * (b[0] - loop[0][0]);
-  }
-  return sum;
-}
-
-/// Returns true if the segments ab and cd cross or overlap, or if an end of one lies inside the other. A common end
-/// alone does not count.
-bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& d) {
-  // True if r, on line pq, is strictly between p and q.
-  const auto between = [](const Point& p, const Point& q, const Point& r) {
-    return std::min(p, q) < r && r < std::max(p, q);
-  };
-  const int c_side = orient2d(a, b, c);
-  const int d_side = orient2d(a, b, d);
-  const int a_side = orient2d(c, d, a);
-  const int b_side = orient2d(c, d, b);
-  if (c_side * d_side < 0 && a_side * b_side < 0) return true;
-  return (c_side == 0 && between(a, b, c)) || (d_side == 0 && between(a, b, d)) || (a_side == 0 && between(c, d, a)) ||
-         (b_side == 0 && between(c, d, b));
-}
+using Polygon = PlanePolygon;
+using Point = PlanePolygon::Point;
 
 /// Tests sides in the order of rising x.
 /// @throws InvalidOption if two sides cross, or touch other than in a common corner.
@@ -93,134 +55,25 @@ void require_simple(const Polygon& polygon, const Context& context) {
   }
 }
 
-/// The outline of a polygon, to which its holes are joined by bridges: one loop of point indices. The ends of bridges
-/// occur twice.
-class JoinedLoop {
- public:
-  JoinedLoop(const Polygon& polygon, const Context& context) : polygon_(polygon), context_(context) {
-    loop_.resize(polygon.loop_end(0));
-    std::iota(loop_.begin(), loop_.end(), 0U);
-    // The rightmost hole is joined first. So the bridge of a hole can only cross the loop joined so far, not a later
-    // hole.
-    std::vector<Hole> holes;
-    for (std::size_t h = 1; h < polygon.loop_starts.size(); ++h) holes.push_back(rightmost(h));
-    std::sort(holes.begin(), holes.end(), [&](const Hole& a, const Hole& b) {
-      return polygon.points[a.start] != polygon.points[b.start] ? polygon.points[a.start] > polygon.points[b.start]
-                                                                : a.start < b.start;
-    });
-    for (const Hole& hole : holes) join(hole);
-  }
-  [[nodiscard]] const std::vector<std::uint32_t>& indices() const { return loop_; }
-
- private:
-  struct Hole {
-    std::size_t loop = 0;
-    std::uint32_t start = 0;  ///< index of its largest point by (x, y)
-  };
-
-  [[nodiscard]] Hole rightmost(std::size_t loop) const {
-    std::uint32_t best = polygon_.loop_starts[loop];
-    for (std::uint32_t i = best; i < polygon_.loop_end(loop); ++i) {
-      if (polygon_.points[i] > polygon_.points[best]) best = i;
-    }
-    return {loop, best};
-  }
-
-  /// Returns true if the ray from corner loop_[at] to the point `target` starts inside the polygon.
-  [[nodiscard]] bool leaves_inwards(std::size_t at, const Point& target) const {
-    const std::size_t n = loop_.size();
-    const Point& before = polygon_.points[loop_[(at + n - 1) % n]];
-    const Point& corner = polygon_.points[loop_[at]];
-    const Point& after = polygon_.points[loop_[(at + 1) % n]];
-    const bool left_of_first = orient2d(before, corner, target) > 0;
-    const bool left_of_second = orient2d(corner, after, target) > 0;
-    return orient2d(before, corner, after) > 0 ? left_of_first && left_of_second : left_of_first || left_of_second;
-  }
-
-  [[nodiscard]] bool is_free(std::uint32_t from, std::uint32_t to) const {
-    const auto& p = polygon_.points;
-    for (std::size_t k = 0; k < loop_.size(); ++k) {
-      if (segments_meet(p[from], p[to], p[loop_[k]], p[loop_[(k + 1) % loop_.size()]])) return false;
-    }
-    return true;
-  }
-
-  void join(const Hole& hole) {
-    const Point& start = polygon_.points[hole.start];
-    std::vector<std::size_t> order;
-    for (std::size_t at = 0; at < loop_.size(); ++at) {
-      if (polygon_.points[loop_[at]] > start && leaves_inwards(at, start)) order.push_back(at);
-    }
-    const auto squared = [&](std::size_t at) {
-      const Point& q = polygon_.points[loop_[at]];
-      return (q[0] - start[0]) * (q[0] - start[0]) + (q[1] - start[1]) * (q[1] - start[1]);
-    };
-    // The closest corner is tried first, because the bridge to it almost never crosses the loop.
-    const auto goes_later = [&](std::size_t a, std::size_t b) {
-      return squared(a) != squared(b) ? squared(a) > squared(b) : a > b;
-    };
-    std::make_heap(order.begin(), order.end(), goes_later);
-    for (auto end = order.end(); end != order.begin(); --end) {
-      throw_if_cancelled(context_);
-      std::pop_heap(order.begin(), end, goes_later);
-      const std::size_t at = *(end - 1);
-      if (!is_free(hole.start, loop_[at])) continue;
-      splice(at, hole);
-      return;
-    }
-    throw InvalidOption("the polygon cannot be triangulated: a hole lies outside the outline or in another hole");
-  }
-
-  /// Inserts after loop_[at] the loop of a hole, from its start back to its start, and then loop_[at] again.
-  void splice(std::size_t at, const Hole& hole) {
-    std::vector<std::uint32_t> inserted;
-    const std::uint32_t first = polygon_.loop_starts[hole.loop];
-    const std::uint32_t count = polygon_.loop_end(hole.loop) - first;
-    for (std::uint32_t k = 0; k <= count; ++k) inserted.push_back(first + (hole.start - first + k) % count);
-    inserted.push_back(loop_[at]);
-    loop_.insert(loop_.begin() + static_cast<std::ptrdiff_t>(at) + 1, inserted.begin(), inserted.end());
-  }
-
-  const Polygon& polygon_;
-  const Context& context_;
-  std::vector<std::uint32_t> loop_;
-};
-
-void Polygon::add_loop(std::span<const Point> loop) {
+/// Adds the outline or a hole.
+/// @throws InvalidOption if the loop has fewer than three points or no area, or if the polygon would have more than
+/// 20,000 points.
+void add_loop(Polygon& polygon, std::span<const Point> loop) {
   require(loop.size() >= 3, "the number of points of a loop", "at least 3", static_cast<double>(loop.size()));
-  const double count = static_cast<double>(points.size() + loop.size());
+  const double count = static_cast<double>(polygon.points.size() + loop.size());
   require(count <= 20000, "the number of points of a polygon", "at most 20000", count);
   const double area = doubled_area(loop);
   require(area > 0 || area < 0, "the area of a loop", "finite and not 0", area);
-  const bool is_outline = loop_starts.empty();
-  loop_starts.push_back(static_cast<std::uint32_t>(points.size()));
-  points.insert(points.end(), loop.begin(), loop.end());
-  if ((area > 0) != is_outline) std::reverse(points.end() - static_cast<std::ptrdiff_t>(loop.size()), points.end());
+  polygon.add_loop(loop);
 }
 
-std::uint32_t Polygon::loop_end(std::size_t loop) const {
-  return loop + 1 < loop_starts.size() ? loop_starts[loop + 1] : static_cast<std::uint32_t>(points.size());
-}
-
-/// Triangulates a polygon by cutting off ears, after its holes are joined to the outline. Triangles are
-/// counter-clockwise. Every edge of a loop is an edge of exactly one triangle, and no point is added.
-/// @throws InvalidOption if loops cross or touch, or a hole is not inside the outline; Cancelled. Cost: O(n^2) for n
-/// points, in practice.
-std::vector<Triangle> triangulate(const Polygon& polygon, const Context& context) {
+/// Triangulates a polygon.
+/// @throws InvalidOption if loops cross or touch, or a hole is not inside the outline; Cancelled.
+std::vector<Triangle> triangles_of(const Polygon& polygon, const Context& context) {
   require_simple(polygon, context);
-  const JoinedLoop joined(polygon, context);
-  const std::vector<std::uint32_t>& loop = joined.indices();
-  std::vector<Point> points;
-  for (const std::uint32_t index : loop) points.push_back(polygon.points[index]);
-  std::vector<Triangle> triangles(loop.size() - 2);
-  std::int64_t work_left = std::numeric_limits<std::int64_t>::max();
-  if (!clip_ears(points, EarOrder::every_other, triangles, work_left, context)) {
-    throw InvalidOption("the polygon cannot be triangulated: its outline or holes cross");
-  }
-  for (Triangle& triangle : triangles) {
-    for (std::uint32_t& corner : triangle) corner = loop[corner];
-  }
-  return triangles;
+  std::optional<std::vector<Triangle>> found = triangulate(polygon, EarOrder::every_other, context);
+  if (found) return std::move(*found);
+  throw InvalidOption("the polygon cannot be triangulated: a hole lies outside the outline or in another hole");
 }
 
 }  // namespace
@@ -279,9 +132,9 @@ TriangleMesh make_extrusion(std::span<const Point2> outline, std::span<const std
                             const ExtrusionOptions& options, const Context& context) {
   require_positive(options.thickness, "thickness");
   require_at_least(options.stacks, 1, "stacks");
-  detail::Polygon polygon;
-  polygon.add_loop(outline);
-  for (const auto& hole : holes) polygon.add_loop(hole);
+  detail::PlanePolygon polygon;
+  detail::add_loop(polygon, outline);
+  for (const auto& hole : holes) detail::add_loop(polygon, hole);
   const auto count = static_cast<std::uint32_t>(polygon.points.size());
   require_triangle_count(2.0 * count * (options.stacks + 2.0));
   const auto levels = static_cast<std::uint32_t>(options.stacks);
@@ -291,7 +144,7 @@ TriangleMesh make_extrusion(std::span<const Point2> outline, std::span<const std
     for (const Point2& p : polygon.points) mesh.vertices.push_back({p[0], p[1], z});
   }
   const std::uint32_t above = levels * count;
-  for (const Triangle& t : detail::triangulate(polygon, context)) {
+  for (const Triangle& t : detail::triangles_of(polygon, context)) {
     mesh.triangles.push_back({t[0], t[2], t[1]});
     mesh.triangles.push_back({t[0] + above, t[1] + above, t[2] + above});
   }

@@ -27,6 +27,9 @@
 #include "voronoi/assemble.hpp"
 #include "voronoi/planes/plane_complex.hpp"
 #include "voronoi/subdivision.hpp"
+#include "voronoi/traced/traced_complex.hpp"
+#include "voronoi/traced/traced_sites.hpp"
+#include "voronoi/traced/traced_structure.hpp"
 
 namespace blum {
 namespace {
@@ -201,6 +204,68 @@ void finish_planes(const MeshView& mesh, const SiteTable& table, const ConvexBod
   timer.lap("homology");
 }
 
+/// Returns the Betti numbers of the requested part of a traced diagram.
+/// @param solid  the Betti numbers of the solid.
+BettiNumbers traced_betti(const TracedSites& sites, VoronoiPart part, const BettiNumbers& solid) {
+  BettiNumbers out = solid;
+  if (part == VoronoiPart::medial_axis) return out;
+  out[2] += static_cast<std::int64_t>(sites.size());
+  if (part == VoronoiPart::all) {
+    out[1] += static_cast<std::int64_t>(sites.hole_count());
+  } else {
+    out[2] -= static_cast<std::int64_t>(sites.face_count());
+  }
+  return out;
+}
+
+/// Returns the largest distance of chords from curved seams and sheets.
+double chord_of(const VoronoiOptions& options, const Box3& box) {
+  constexpr double parts = 32;  // of a cube
+  const Vec3d size = box.size();
+  const double chord = std::max({size.x, size.y, size.z}) / (parts * options.resolution);
+  return options.tolerance ? std::min(chord, 0.5 * *options.tolerance) : chord;
+}
+
+/// Traces the diagram.
+/// @return the reason why this is impossible; empty if it succeeded.
+std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact,
+                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+  const MeshView mesh = solid.surface().mesh;
+  const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(mesh);
+  const std::optional<TracedSites> sites = TracedSites::of(mesh, table, exact, flatness);
+  if (!sites) return "joined triangles are not flat";
+  const TracedResult traced = traced_structure(*sites, context);
+  timer.lap("traces");
+  if (!traced.structure) {
+    return traced.problem + " near " + exact_text(traced.place.x) + ", " + exact_text(traced.place.y) + ", " +
+           exact_text(traced.place.z);
+  }
+  const double chord = chord_of(options, bounds(mesh));
+  const auto complex_of = [&](VoronoiPart part) {
+    return traced_complex(mesh, table, *sites, *traced.structure, part, chord, context);
+  };
+  std::optional<Complex> all = complex_of(VoronoiPart::all);
+  if (!all) return "a sheet cannot be divided into triangles";
+  if (homology(all->view(), context) != traced_betti(*sites, VoronoiPart::all, *solid.betti())) {
+    return "the traced diagram does not have the expected Betti numbers";
+  }
+  out.complex = options.part == VoronoiPart::all ? std::move(*all) : *complex_of(options.part);
+  timer.lap("complex");
+  VoronoiReport& report = out.report;
+  report.traced = true;
+  report.flatness = flatness;
+  report.joined = sites->tolerance();
+  report.faces = sites->face_count();
+  report.reflex_edges = exact.reflex_edges.size();
+  report.reflex_vertices = exact.reflex_vertices.size();
+  report.hausdorff_bound = 2 * chord;
+  report.expected = traced_betti(*sites, options.part, *solid.betti());
+  report.found = homology(out.complex.view(), context);
+  report.certified = report.found == report.expected;
+  timer.lap("homology");
+  return {};
+}
+
 /// @param phases  phases that were already completed.
 VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::vector<PhaseTime> phases,
                        const Context& context) {
@@ -213,12 +278,16 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
   const SiteTable table(mesh, context);
   timer.lap("checks");
   PolyhedronSites sites = polyhedron_sites(mesh, table, context);
-  if (options.method == VoronoiMethod::automatic) {
+  if (options.method != VoronoiMethod::cubes) {
     if (const auto bodies = convex_bodies(mesh, table, sites, options.flatness, context)) {
       timer.lap("planes");
       finish_planes(mesh, table, *bodies, options.part, timer, out, context);
       return out;
     }
+  }
+  if (options.method == VoronoiMethod::traced) {
+    report.trace_problem = trace(solid, table, sites, options, timer, out, context);
+    if (report.traced) return out;
   }
   const VoronoiSolid sited(mesh, table, std::move(sites), options.part);
   report.faces = sited.sites.face_count;

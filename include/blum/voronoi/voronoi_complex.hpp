@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -40,13 +41,15 @@ struct Description<VoronoiPart> {
 enum class VoronoiMethod : std::uint8_t {
   automatic,  ///< If all bodies are convex: planes. Otherwise: cubes.
   cubes,      ///< Cubes of an octree, each with a proof of its topology.
+  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced. If this fails: cubes.
 };
 
 template <>
 struct Description<VoronoiMethod> {
   static constexpr std::string_view name = "VoronoiMethod";
   static constexpr std::array values{NamedValue{VoronoiMethod::automatic, "auto"},
-                                     NamedValue{VoronoiMethod::cubes, "cubes"}};
+                                     NamedValue{VoronoiMethod::cubes, "cubes"},
+                                     NamedValue{VoronoiMethod::traced, "traced"}};
 };
 
 struct VoronoiOptions {
@@ -154,8 +157,13 @@ struct VoronoiReport {
   double joined = 0;    ///< If exact: junctions and seams within this distance are one, mesh units.
   /// If exact: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second, smaller one.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
-  BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
-  BettiNumbers found{};     ///< Betti numbers of the complex.
+  /// True if the seams were traced. Then sheets, seams and junctions are those of the diagram within rounding, as far
+  /// as checks show: all sheets are closed up, and the complex has the expected Betti numbers. See
+  /// VoronoiMethod::traced.
+  bool traced = false;
+  std::string trace_problem;  ///< Reason why the seams were not traced, and the place; empty if they were not to be.
+  BettiNumbers expected{};    ///< Betti numbers that the requested part of the exact diagram has.
+  BettiNumbers found{};       ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
   /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact, it
   /// covers rounding and joined junctions, and the diagram is that of the planes, within `flatness` of the corners.
@@ -199,6 +207,9 @@ struct Description<VoronoiReport> {
              "if exact: junctions and seams within this distance are one"},
       Member{"joined_faces", &VoronoiReport::joined_faces, "",
              "pairs of faces: the first one was joined to the second one, since rounding bends them"},
+      Member{"traced", &VoronoiReport::traced, "",
+             "true if the seams were traced: sheets, seams and junctions are those of the diagram within rounding"},
+      Member{"trace_problem", &VoronoiReport::trace_problem, "", "reason why tracing failed; empty if it did not"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},
       Member{"found_betti", &VoronoiReport::found, "", "components, tunnels, voids of the complex"},
@@ -252,8 +263,8 @@ struct VoronoiComplex {
   /// triangles, then reflex edges, then reflex vertices. If faces were joined (VoronoiReport::joined_faces), the
   /// smallest number stands for all.
   ///
-  /// If VoronoiReport::exact, vertices also have the column `junction` (int32): 1 at a junction, 0 in the middle of a
-  /// sheet.
+  /// If VoronoiReport::exact or VoronoiReport::traced, vertices also have the column `junction` (int32): 1 at a
+  /// junction, 0 inside a seam or sheet.
   Complex complex;
   VoronoiReport report;
 };

@@ -1,0 +1,395 @@
+#include "voronoi/traced/seam_tracer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "voronoi/label_geometry.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+using Index = TracedSites::Index;
+
+bool contains(const std::vector<Index>& sorted, Index i) {
+  return std::binary_search(sorted.begin(), sorted.end(), i);
+}
+
+/// Largest step, relative to the radius.
+constexpr double longest_step = 0.5;
+constexpr int most_steps = 20000;
+/// A curve with a smaller radius has reached the surface, in multiples of the tolerance.
+constexpr double touching = 512;
+
+}  // namespace
+
+/// How far a curve may be followed before a site can become one of the closest.
+struct SeamTracer::Room {
+  double step = 0;
+  Index site = 0;
+};
+
+double SeamTracer::value(const TracedSurface& surface, const Vec3d& x) const {
+  if (surface.is_plane()) return dot(surface.normal, x - surface.point);
+  return sites_.distance(surface.first, x) - sites_.distance(surface.second, x);
+}
+
+Vec3d SeamTracer::slope(const TracedSurface& surface, const Vec3d& x) const {
+  if (surface.is_plane()) return surface.normal;
+  return sites_.gradient(surface.first, x) - sites_.gradient(surface.second, x);
+}
+
+TracedSurface SeamTracer::between(Index first, Index second, const Vec3d& at) const {
+  const TracedSite& a = sites_[first];
+  const TracedSite& b = sites_[second];
+  if (a.kind == SiteKind::edge && b.kind == SiteKind::edge) {
+    for (const std::uint32_t v : a.vertices) {
+      if (!contains(b.vertices, v)) continue;
+      // Points x with |x . d_a| = |x . d_b|, relative to the vertex.
+      const Vec3d& apex = sites_.vertices()[v];
+      const double along_a = dot(a.direction, at - apex), along_b = dot(b.direction, at - apex);
+      const Vec3d normal = a.direction + b.direction * ((along_a < 0) == (along_b < 0) ? -1.0 : 1.0);
+      if (length(normal) > 1e-6) return TracedSurface::plane(unit(normal), apex);
+    }
+  }
+  return TracedSurface::between(first, second);
+}
+
+Vec3d SeamTracer::tangent(const TracedCurve& curve, const Vec3d& x) const {
+  const Vec3d way = cross(slope(curve.surfaces[0], x), slope(curve.surfaces[1], x));
+  return length(way) > 0 ? unit(way) : Vec3d{};
+}
+
+std::optional<Vec3d> SeamTracer::solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const {
+  const Vec3d start = x;
+  double last = std::numeric_limits<double>::infinity();
+  constexpr int most_iterations = 30;
+  for (int k = 0; k < most_iterations; ++k) {
+    std::array<Vec3d, 3> row;
+    std::array<double, 3> f{};
+    for (std::size_t s = 0; s < 3; ++s) {
+      row[s] = slope(surfaces[s], x);
+      f[s] = value(surfaces[s], x);
+      // Rows of unit length make the determinant a measure of the angles between the surfaces.
+      const double size = length(row[s]);
+      if (!(size > 1e-13)) return std::nullopt;
+      row[s] = row[s] / size;
+      f[s] /= size;
+    }
+    const double det = dot(row[0], cross(row[1], row[2]));
+    if (!(std::abs(det) > 1e-12)) return std::nullopt;
+    const Vec3d step =
+        (cross(row[1], row[2]) * f[0] + cross(row[2], row[0]) * f[1] + cross(row[0], row[1]) * f[2]) / det;
+    x = x - step;
+    const double size = length(step);
+    if (!(size < 2 * reach) || !(length(x - start) <= 2 * reach)) return std::nullopt;
+    if (size <= 1e-15 * sites_.extent()) return x;
+    if (size >= 0.5 * last && size <= 1e-3 * sites_.tolerance()) return x;
+    last = size;
+  }
+  return last <= 0.1 * sites_.tolerance() ? std::optional(x) : std::nullopt;
+}
+
+std::optional<Vec3d> SeamTracer::point_in_plane(const TracedCurve& curve, const Vec3d& guess,
+                                                const Vec3d& normal) const {
+  return solve({curve.surfaces[0], curve.surfaces[1], TracedSurface::plane(normal, guess)}, guess,
+               sites_.distance(curve.sites[0], guess) + 100 * sites_.tolerance());
+}
+
+std::optional<TracedCurve> SeamTracer::curve_of(const std::vector<Index>& found, const Vec3d& at,
+                                                const Vec3d& towards) const {
+  TracedCurve curve;
+  curve.sites = found;
+  // The two surfaces are those that determine the direction best.
+  std::vector<TracedSurface> surfaces;
+  constexpr double same_foot = 1e-7;
+  std::vector<Vec3d> gradients;
+  for (std::size_t a = 0; a < found.size(); ++a) {
+    const Vec3d own = sites_.gradient(found[a], at);
+    for (std::size_t b = a + 1; b < found.size(); ++b) {
+      if (length(own - sites_.gradient(found[b], at)) > same_foot) {
+        surfaces.push_back(between(found[a], found[b], at + towards * (1e-3 * sites_.distance(found[a], at))));
+      }
+    }
+    if (std::none_of(gradients.begin(), gradients.end(),
+                     [&](const Vec3d& g) { return length(g - own) <= same_foot; })) {
+      gradients.push_back(own);
+    }
+  }
+  // Three footprints determine a seam. With fewer, it lies in sides of domains.
+  for (std::size_t a = 0; gradients.size() < 3 && a < found.size(); ++a) {
+    for (const DomainSide* side : sites_.sides_at(found[a], at, 8 * sites_.tolerance())) {
+      if (side->is_open && std::abs(dot(side->normal, towards)) < 1e-5) {
+        surfaces.push_back(TracedSurface::plane(side->normal, side->ends[0]));
+      }
+    }
+  }
+  double best = 1e-9;
+  bool is_found = false;
+  for (std::size_t a = 0; a < surfaces.size(); ++a) {
+    const Vec3d first = slope(surfaces[a], at);
+    for (std::size_t b = a + 1; b < surfaces.size(); ++b) {
+      const double size = length(cross(first, slope(surfaces[b], at)));
+      if (size <= best * (1 + 1e-9)) continue;
+      best = size;
+      curve.surfaces = {surfaces[a], surfaces[b]};
+      is_found = true;
+    }
+  }
+  return is_found ? std::optional(curve) : std::nullopt;
+}
+
+std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const Vec3d& at, const Vec3d& normal,
+                                           double reach) const {
+  std::vector<TracedSurface> surfaces;
+  for (std::size_t a = 0; a < near.size(); ++a) {
+    for (std::size_t b = a + 1; b < near.size(); ++b)
+      surfaces.push_back(between(near[a], near[b], at + normal * (0.1 * reach)));
+    for (const DomainSide& side : sites_[near[a]].sides) {
+      if (side.is_open && std::abs(side.height(at)) <= reach) {
+        surfaces.push_back(TracedSurface::plane(side.normal, side.ends[0]));
+      }
+    }
+  }
+  const Vec3d other = std::abs(normal.x) < 0.6   ? Vec3d{1, 0, 0}
+                      : std::abs(normal.y) < 0.6 ? Vec3d{0, 1, 0}
+                                                 : Vec3d{0, 0, 1};
+  const Vec3d right = unit(cross(other, normal));
+  const Vec3d up = cross(normal, right);
+  const TracedSurface plane = TracedSurface::plane(normal, at);
+  std::vector<Vec3d> out;
+  for (std::size_t a = 0; a < surfaces.size(); ++a) {
+    for (std::size_t b = a + 1; b < surfaces.size(); ++b) {
+      for (const Vec3d& aside : {Vec3d{}, right, up, -right, -up}) {
+        const auto found = solve({surfaces[a], surfaces[b], plane}, at + aside * (0.2 * reach), reach);
+        if (!found || length(*found - at) > reach) continue;
+        // Where two sites have one footprint, their surfaces touch instead of crossing, and the point is not precise.
+        constexpr double least_angle = 1e-4;
+        const Vec3d first = slope(surfaces[a], *found), second = slope(surfaces[b], *found);
+        if (length(cross(first, second)) < least_angle * length(first) * length(second)) continue;
+        if (length(first) < 1e-6 || length(second) < 1e-6) continue;
+        const bool is_known = std::any_of(
+            out.begin(), out.end(), [&](const Vec3d& p) { return length(p - *found) <= 16 * sites_.tolerance(); });
+        if (!is_known) out.push_back(*found);
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                double radius, double most) const {
+  std::vector<Room> out;
+  const double reach = radius + 2 * most;
+  // Second derivatives of distances along the curve are a few times its curvature.
+  const double bend = 8 / std::max(radius, sites_.tolerance());
+  // Returns the first positive root of a + b s - bend/2 s^2.
+  const auto root = [&](double a, double b) { return (b + std::sqrt(b * b + 2 * bend * a)) / bend; };
+  for (Index i = 0; i < sites_.size(); ++i) {
+    if (contains(curve.sites, i)) continue;
+    const TracedSite& site = sites_[i];
+    const Vec3d q = max(site.box.lower, min(site.box.upper, x));
+    if (squared_length(q - x) > reach * reach) continue;
+    const double beyond = sites_.outside(i, x);
+    if (beyond >= most) continue;
+    const double gap = sites_.least_distance(i, x) - radius;
+    double step = std::max(gap / 2, beyond);
+    if (beyond > 0 && site.kind != SiteKind::face) {
+      for (const DomainSide& side : site.sides) {
+        const double height = -side.height(x);
+        if (height > 0) step = std::max(step, std::min(root(height, -dot(side.normal, along)), most));
+      }
+    }
+    if (beyond == 0 && gap > 0) {
+      const double rate = dot(sites_.gradient(i, x) - sites_.gradient(curve.sites[0], x), along);
+      step = std::max(step, root(gap, rate));
+    }
+    if (step < most) out.push_back({std::max(step, 0.0), i});
+  }
+  std::sort(out.begin(), out.end(), [](const Room& a, const Room& b) { return a.step < b.step; });
+  return out;
+}
+
+std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site, const Vec3d& x, const Vec3d& along,
+                                            double radius) const {
+  std::optional<Vec3d> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const TracedSurface& surface, double most) {
+    const auto found = solve({curve.surfaces[0], curve.surfaces[1], surface}, x, radius);
+    if (!found) return;
+    const double way = dot(*found - x, along);
+    if (way <= 0 || way >= std::min(least, most) || way < 0.5 * length(*found - x)) return;
+    const TracedSites::Closest closest = sites_.closest(*found, sites_.tolerance());
+    if (!contains(closest.sites, site)) return;
+    if (!std::includes(closest.sites.begin(), closest.sites.end(), curve.sites.begin(), curve.sites.end())) return;
+    least = way;
+    best = found;
+  };
+  const double infinite = least;
+  for (const DomainSide& side : sites_[site].sides) {
+    if (side.is_open) consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
+  }
+  // At a side of its domain, the distance of a site touches that of its neighbour, and the side gives the place more
+  // precisely.
+  const double most = least - 1e-3 * radius;
+  for (std::size_t k = 0; k < std::min<std::size_t>(curve.sites.size(), 3); ++k) {
+    consider(between(curve.sites[k], site, x), most);
+  }
+  return best;
+}
+
+std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                      double radius) const {
+  std::vector<std::uint32_t> common = sites_[curve.sites[0]].vertices;
+  for (std::size_t k = 1; k < curve.sites.size() && !common.empty(); ++k) {
+    std::vector<std::uint32_t> both;
+    const std::vector<std::uint32_t>& own = sites_[curve.sites[k]].vertices;
+    std::set_intersection(common.begin(), common.end(), own.begin(), own.end(), std::back_inserter(both));
+    common = std::move(both);
+  }
+  for (const std::uint32_t v : common) {
+    const Vec3d way = sites_.vertices()[v] - x;
+    const double size = length(way);
+    // All surfaces of the curve are cones with the vertex as their apex, so it is straight.
+    if (dot(way, along) < (1 - 1e-9) * size) continue;
+    const std::vector<Room> near = rooms(curve, x, along, radius, size);
+    const bool is_free = std::all_of(near.begin(), near.end(), [&](const Room& room) {
+      return std::binary_search(sites_[room.site].vertices.begin(), sites_[room.site].vertices.end(), v);
+    });
+    if (is_free) return v;
+  }
+  return std::nullopt;
+}
+
+bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to) const {
+  const Vec3d way = to - from;
+  const double size = length(way);
+  if (!(size > 0)) return true;
+  constexpr int parts = 6;
+  for (int k = 1; k <= parts; ++k) {
+    // The last point is only nearly at the end, where an event may be.
+    const double share = k < parts ? static_cast<double>(k) / parts : 0.999;
+    const auto at = point_in_plane(curve, from + way * share, way / size);
+    if (!at || length(*at - from) > 1.5 * size) return false;
+    if (sites_.closest(*at, sites_.tolerance()).sites != curve.sites) return false;
+  }
+  return true;
+}
+
+void SeamTracer::end_at_border(Trace& trace) const {
+  trace.end = TraceEnd::border;
+  constexpr double close = 1024;
+  const Vec3d& end = trace.points.back();
+  for (std::uint32_t v = 0; v < sites_.vertices().size(); ++v) {
+    if (length(sites_.vertices()[v] - end) > close * sites_.tolerance()) continue;
+    trace.end = TraceEnd::vertex;
+    trace.vertex = v;
+    trace.points.back() = sites_.vertices()[v];
+    return;
+  }
+}
+
+Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards) const {
+  Trace out;
+  out.points.push_back(start);
+  Vec3d x = start;
+  Vec3d along = tangent(curve, x);
+  if (dot(along, towards) < 0) along = -along;
+  if (length(along) == 0) return out;
+  const double tolerance = sites_.tolerance();
+  double way = 0;
+  for (int k = 0; k < most_steps; ++k) {
+    const double radius = sites_.distance(curve.sites[0], x);
+    double most = longest_step * std::max(radius, 64 * tolerance);
+    const std::vector<Room> near = rooms(curve, x, along, radius, 2 * most);
+    if (k > 0 || radius > tolerance) {
+      if (const auto v = vertex_ahead(curve, x, along, radius)) {
+        out.points.push_back(sites_.vertices()[*v]);
+        out.end = TraceEnd::vertex;
+        out.vertex = *v;
+        return out;
+      }
+    }
+    if (radius < touching * tolerance && dot(sites_.gradient(curve.sites[0], x), along) < 0) {
+      end_at_border(out);
+      return out;
+    }
+    // Events near the start are the junction where the curve starts.
+    constexpr std::size_t most_tried = 6;
+    for (std::size_t r = 0; r < near.size() && r < most_tried && near[r].step < most; ++r) {
+      const auto found = event_with(curve, near[r].site, x, along, radius);
+      if (!found || length(*found - start) <= 16 * tolerance) continue;
+      const double size = length(*found - x);
+      if (size > 2 * most) continue;
+      const TracedSites::Closest there = sites_.closest(*found, tolerance);
+      const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
+        return room.step >= size || contains(there.sites, room.site);
+      });
+      if (!is_first && !is_clear(curve, x, *found)) continue;
+      out.points.push_back(*found);
+      out.sites = there.sites;
+      out.end = TraceEnd::event;
+      if (there.radius < touching * tolerance) end_at_border(out);
+      return out;
+    }
+    double step = near.empty() ? most : std::min(most, near.front().step);
+    if (step < 4 * tolerance) {
+      if (way > 64 * tolerance && near.front().step <= 0.25 * tolerance) {
+        // The curve touches a region without a clear crossing.
+        const TracedSites::Closest there = sites_.closest(x, 4 * tolerance);
+        out.sites = there.sites;
+        out.end = TraceEnd::event;
+        if (there.radius < touching * tolerance) end_at_border(out);
+        return out;
+      }
+      step = 4 * tolerance;
+    }
+    std::optional<Vec3d> next;
+    Vec3d turned;
+    // Sites that come close without reaching the curve would make all steps short.
+    const double leap = std::min(0.1 * radius, 32 * step);
+    if (step < 0.5 * leap && way > 64 * tolerance) {
+      next = point_in_plane(curve, x + along * leap, along);
+      if (next && length(*next - x) < 1.5 * leap && is_clear(curve, x, *next) &&
+          sites_.closest(*next, tolerance).sites == curve.sites) {
+        turned = tangent(curve, *next);
+        if (dot(turned, along) < 0) turned = -turned;
+        if (dot(turned, along) > 0.9) {
+          way += length(*next - x);
+          x = *next;
+          along = turned;
+          out.points.push_back(x);
+          continue;
+        }
+      }
+      next.reset();
+    }
+    constexpr int most_halvings = 30;
+    for (int h = 0; h < most_halvings; ++h, step *= 0.5) {
+      next = point_in_plane(curve, x + along * step, along);
+      if (!next || length(*next - x) > 1.5 * step) continue;
+      turned = tangent(curve, *next);
+      if (dot(turned, along) < 0) turned = -turned;
+      if (dot(turned, along) > 0.9) break;
+      next.reset();
+    }
+    if (!next || length(turned) == 0) return out;
+    way += length(*next - x);
+    x = *next;
+    along = turned;
+    out.points.push_back(x);
+    if (way > 4 * length(x - start) && k > 4 && length(x - start) < 2 * step &&
+        dot(along, tangent(curve, start)) != 0) {
+      const Vec3d first = out.points[1] - start;
+      if (dot(first, along) > 0.9 * length(first) && dot(start - x, along) >= 0) {
+        out.points.push_back(start);
+        out.end = TraceEnd::closed;
+        return out;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace blum::voronoi

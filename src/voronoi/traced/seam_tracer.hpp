@@ -1,0 +1,98 @@
+// Blum: tracing of curves on which several sites are closest. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "voronoi/traced/traced_sites.hpp"
+
+namespace blum::voronoi {
+
+/// A surface that contains a curve: a plane, or the points equally far from two sites.
+struct TracedSurface {
+  using Index = TracedSites::Index;
+  static constexpr Index none = 0xffffffff;
+
+  Index first = none;  ///< `none` for a plane
+  Index second = none;
+  Vec3d normal;  ///< of a plane: a unit vector
+  Vec3d point;   ///< of a plane
+
+  static TracedSurface between(Index first, Index second) { return {first, second, {}, {}}; }
+  static TracedSurface plane(const Vec3d& normal, const Vec3d& point) { return {none, none, normal, point}; }
+  [[nodiscard]] bool is_plane() const { return first == none; }
+};
+
+/// A curve in two surfaces. All points of a piece of the curve have the same closest sites.
+struct TracedCurve {
+  std::array<TracedSurface, 2> surfaces;
+  std::vector<TracedSites::Index> sites;  ///< ascending
+};
+
+/// Where and why a trace ended.
+enum class TraceEnd : std::uint8_t {
+  event,   ///< Other sites are as close, or the domain of a site ends.
+  vertex,  ///< At a vertex of the polyhedron.
+  border,  ///< At an edge of the polyhedron.
+  closed,  ///< At its start.
+  failed   ///< Numerically.
+};
+
+/// A traced piece of a curve.
+struct Trace {
+  std::vector<Vec3d> points;  ///< from start to end
+  TraceEnd end = TraceEnd::failed;
+  std::uint32_t vertex = 0;               ///< of the mesh, if the trace ended there
+  std::vector<TracedSites::Index> sites;  ///< if it ended at an event: all closest sites there
+};
+
+/// Follows curves from point to point. A step is as long as the distances of other sites allow: along the curve, no
+/// distance changes faster than the way.
+class SeamTracer {
+ public:
+  explicit SeamTracer(const TracedSites& sites) : sites_(sites) {}
+
+  /// @param start   a point of the curve.
+  /// @param towards direction at the start; need not be a tangent.
+  [[nodiscard]] Trace trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards) const;
+  /// Returns the point of a curve in a plane, near a first guess.
+  [[nodiscard]] std::optional<Vec3d> point_in_plane(const TracedCurve& curve, const Vec3d& guess,
+                                                    const Vec3d& normal) const;
+  /// Returns the direction of a curve at one of its points, a unit vector or 0.
+  [[nodiscard]] Vec3d tangent(const TracedCurve& curve, const Vec3d& x) const;
+  /// Returns a curve on which three or more sites, or sites of fewer footprints and a side of a domain, are equally
+  /// close; nothing if they do not determine one.
+  [[nodiscard]] std::optional<TracedCurve> curve_of(const std::vector<TracedSites::Index>& sites, const Vec3d& at,
+                                                    const Vec3d& towards) const;
+
+  /// Returns the points in which seams meet a plane near a point, among given sites.
+  /// @param reach  largest distance of the points.
+  [[nodiscard]] std::vector<Vec3d> seam_points(const std::vector<TracedSites::Index>& sites, const Vec3d& at,
+                                               const Vec3d& normal, double reach) const;
+
+  /// Returns the points equally far from two sites, near one of them. For edges from one vertex, this is a plane.
+  [[nodiscard]] TracedSurface between(TracedSites::Index first, TracedSites::Index second, const Vec3d& at) const;
+
+ private:
+  struct Room;
+  [[nodiscard]] std::vector<Room> rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along, double radius,
+                                        double most) const;
+  [[nodiscard]] std::optional<Vec3d> solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const;
+  [[nodiscard]] std::optional<Vec3d> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
+                                                const Vec3d& along, double radius) const;
+  /// Sets the end of a trace that reached the surface: at a vertex if one is close.
+  void end_at_border(Trace& trace) const;
+  /// Returns true if no other site is as close at points of the curve between two of its points.
+  [[nodiscard]] bool is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to) const;
+  [[nodiscard]] std::optional<std::uint32_t> vertex_ahead(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                          double radius) const;
+  [[nodiscard]] double value(const TracedSurface& surface, const Vec3d& x) const;
+  [[nodiscard]] Vec3d slope(const TracedSurface& surface, const Vec3d& x) const;
+
+  const TracedSites& sites_;
+};
+
+}  // namespace blum::voronoi

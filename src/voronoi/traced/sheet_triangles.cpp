@@ -1,0 +1,188 @@
+#include "voronoi/traced/sheet_triangles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "blum/geometry/ear_clipping.hpp"
+#include "blum/geometry/plane_polygon.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+using Point = WallMap::Point;
+constexpr std::uint32_t none = 0xffffffff;
+
+double cross_of(const Point& a, const Point& b, const Point& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// Returns true if d lies clearly inside the circle through a, b and c, which run counterclockwise.
+bool is_in_circle(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
+               cy = c[1] - d[1];
+  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
+  const double det = aa * (bx * cy - by * cx) - bb * (ax * cy - ay * cx) + cc * (ax * by - ay * bx);
+  return det > 1e-9 * aa * (bb + cc);
+}
+
+class Refinement {
+ public:
+  Refinement(const WallMap& map, SheetTriangles& out, double chord, const Context& context)
+      : map_(map), out_(out), chord_(chord), context_(context) {}
+
+  void run() {
+    flip_all();
+    if (map_.is_planar()) return;
+    constexpr int most_passes = 40;
+    for (int k = 0; k < most_passes && split_all(); ++k) {
+      flip_all();
+      throw_if_cancelled(context_);
+    }
+  }
+
+ private:
+  /// Sides of triangles by their ends, the smaller one first: up to two triangles.
+  using Sides = std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::uint32_t, 2>>;
+
+  static std::pair<std::uint32_t, std::uint32_t> key(std::uint32_t a, std::uint32_t b) {
+    return {std::min(a, b), std::max(a, b)};
+  }
+
+  [[nodiscard]] Sides sides() const {
+    Sides out;
+    for (std::uint32_t t = 0; t < out_.triangles.size(); ++t) {
+      const Triangle& corners = out_.triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        auto& place = out.try_emplace(key(corners[k], corners[(k + 1) % 3]), std::array{none, none}).first->second;
+        (place[0] == none ? place[0] : place[1]) = t;
+      }
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::uint32_t apex(std::uint32_t t, std::uint32_t a, std::uint32_t b) const {
+    for (const std::uint32_t v : out_.triangles[t]) {
+      if (v != a && v != b) return v;
+    }
+    return a;
+  }
+
+  /// Flips inner edges until they satisfy the Delaunay condition in the plane.
+  void flip_all() {
+    constexpr int most_passes = 30;
+    for (int pass = 0; pass < most_passes; ++pass) {
+      bool is_any = false;
+      std::vector<bool> is_changed(out_.triangles.size(), false);
+      const Sides all = sides();
+      for (const auto& [ends, at] : all) {
+        if (at[1] == none || is_changed[at[0]] || is_changed[at[1]]) continue;
+        auto [a, b] = ends;
+        const std::uint32_t c = apex(at[0], a, b), d = apex(at[1], a, b);
+        const auto& p = out_.plane;
+        if (cross_of(p[a], p[b], p[c]) < 0) std::swap(a, b);
+        if (c == d || all.contains(key(c, d))) continue;
+        // The flipped triangles c-d must both be counterclockwise.
+        const double least = 1e-12 * (std::abs(cross_of(p[a], p[b], p[c])) + std::abs(cross_of(p[a], p[b], p[d])));
+        if (cross_of(p[c], p[a], p[d]) <= least || cross_of(p[d], p[b], p[c]) <= least) continue;
+        if (!is_in_circle(p[a], p[b], p[c], p[d])) continue;
+        out_.triangles[at[0]] = {c, a, d};
+        out_.triangles[at[1]] = {d, b, c};
+        is_changed[at[0]] = is_changed[at[1]] = true;
+        is_any = true;
+      }
+      if (!is_any) return;
+    }
+  }
+
+  [[nodiscard]] Point middle(std::uint32_t a, std::uint32_t b) const {
+    return {0.5 * (out_.plane[a][0] + out_.plane[b][0]), 0.5 * (out_.plane[a][1] + out_.plane[b][1])};
+  }
+
+  std::uint32_t add(const Point& p) {
+    out_.plane.push_back(p);
+    out_.points.push_back(map_.from_plane(p));
+    return static_cast<std::uint32_t>(out_.points.size() - 1);
+  }
+
+  /// Splits inner edges and triangles whose middles are too far from the sheet, the worst edges first.
+  bool split_all() {
+    struct Edge {
+      double error;
+      std::uint32_t a, b;
+      std::array<std::uint32_t, 2> at;
+    };
+    std::vector<Edge> edges;
+    for (const auto& [ends, at] : sides()) {
+      if (at[1] == none) continue;
+      const auto& [a, b] = ends;
+      const double error = length(map_.from_plane(middle(a, b)) - 0.5 * (out_.points[a] + out_.points[b]));
+      if (error > chord_) edges.push_back({error, a, b, at});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& p, const Edge& q) {
+      return p.error != q.error ? p.error > q.error : std::pair(p.a, p.b) < std::pair(q.a, q.b);
+    });
+    const std::size_t count = out_.triangles.size();
+    std::vector<bool> is_changed(count, false);
+    for (const Edge& edge : edges) {
+      if (is_changed[edge.at[0]] || is_changed[edge.at[1]]) continue;
+      const std::uint32_t m = add(middle(edge.a, edge.b));
+      for (const std::uint32_t t : edge.at) {
+        is_changed[t] = true;
+        Triangle second = out_.triangles[t];
+        std::replace(out_.triangles[t].begin(), out_.triangles[t].end(), edge.a, m);
+        std::replace(second.begin(), second.end(), edge.b, m);
+        out_.triangles.push_back(second);
+      }
+    }
+    bool is_any = !edges.empty();
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (is_changed[t]) continue;
+      const auto [a, b, c] = out_.triangles[t];
+      const auto& p = out_.plane;
+      const Point centre{(p[a][0] + p[b][0] + p[c][0]) / 3, (p[a][1] + p[b][1] + p[c][1]) / 3};
+      const Vec3d flat = (out_.points[a] + out_.points[b] + out_.points[c]) / 3.0;
+      if (length(map_.from_plane(centre) - flat) <= chord_) continue;
+      if (!(cross_of(p[a], p[b], p[c]) > 0)) continue;
+      const std::uint32_t m = add(centre);
+      out_.triangles[t] = {a, b, m};
+      out_.triangles.push_back({b, c, m});
+      out_.triangles.push_back({c, a, m});
+      is_any = true;
+    }
+    return is_any;
+  }
+
+  const WallMap& map_;
+  SheetTriangles& out_;
+  const double chord_;
+  const Context& context_;
+};
+
+}  // namespace
+
+std::optional<SheetTriangles> sheet_triangles(const WallMap& map, const std::vector<std::vector<Vec3d>>& loops,
+                                              double chord, const Context& context) {
+  SheetTriangles out;
+  detail::PlanePolygon polygon;
+  std::vector<std::uint32_t> number;  // of each point of the polygon
+  for (const std::vector<Vec3d>& loop : loops) {
+    std::vector<Point> flat;
+    const auto first = static_cast<std::uint32_t>(out.points.size());
+    for (const Vec3d& x : loop) {
+      flat.push_back(map.to_plane(x));
+      out.points.push_back(x);
+      number.push_back(static_cast<std::uint32_t>(number.size()));
+    }
+    out.plane.insert(out.plane.end(), flat.begin(), flat.end());
+    if (!polygon.add_loop(flat)) std::reverse(number.begin() + first, number.end());
+  }
+  const auto triangles = detail::triangulate(polygon, detail::EarOrder::in_turn, context);
+  if (!triangles) return std::nullopt;
+  for (const Triangle& t : *triangles) out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+  Refinement(map, out, chord, context).run();
+  return out;
+}
+
+}  // namespace blum::voronoi

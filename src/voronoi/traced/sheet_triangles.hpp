@@ -1,0 +1,34 @@
+// Blum: triangles of a sheet between its curves. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "voronoi/traced/wall_map.hpp"
+
+namespace blum::voronoi {
+
+/// A triangulated sheet. The first vertices are those of its boundary; the others lie inside.
+struct SheetTriangles {
+  std::vector<Vec3d> points;
+  std::vector<WallMap::Point> plane;  ///< the same points by WallMap::to_plane()
+  std::vector<Triangle> triangles;    ///< counterclockwise in the plane
+};
+
+/// Triangulates a sheet. Triangles of curved sheets are split until the middles of their edges, and their own middles,
+/// are close to the sheet. Edges of the boundary are not split.
+/// @param loops  points of the boundary; the outer loop first.
+/// @param chord  largest distance of middles from the sheet, > 0, mesh units.
+/// @return nothing if the loops cross in the plane.
+/// @throws Cancelled.
+[[nodiscard]] std::optional<SheetTriangles> sheet_triangles(const WallMap& map,
+                                                            const std::vector<std::vector<Vec3d>>& loops, double chord,
+                                                            const Context& context);
+
+}  // namespace blum::voronoi

@@ -1,0 +1,476 @@
+#include "voronoi/traced/traced_complex.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/medial_columns.hpp"
+#include "blum/geometry/closest_point.hpp"
+#include "blum/geometry/plane_polygon.hpp"
+#include "voronoi/label_geometry.hpp"
+#include "voronoi/traced/seam_tracer.hpp"
+#include "voronoi/traced/sheet_triangles.hpp"
+#include "voronoi/traced/wall_map.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+using Index = TracedSites::Index;
+using Sheet = TracedStructure::Sheet;
+constexpr std::uint32_t none = TracedStructure::none;
+
+/// A point of the complex.
+struct Vertex {
+  Vec3d at;
+  std::vector<Index> sites;  ///< closest sites; empty on the surface
+  std::uint32_t on = none;   ///< vertex of the mesh, on the surface
+  bool is_junction = false;
+};
+
+class Assembly {
+ public:
+  Assembly(const MeshView& mesh, const SiteTable& table, const TracedSites& sites, const TracedStructure& structure,
+           VoronoiPart part, double chord, const Context& context)
+      : mesh_(mesh),
+        table_(table),
+        sites_(sites),
+        structure_(structure),
+        part_(part),
+        chord_(chord),
+        context_(context),
+        tracer_(sites) {}
+
+  std::optional<Complex> build() {
+    list_triangles();
+    for (const TracedStructure::Junction& junction : structure_.junctions) {
+      vertices_.push_back({junction.at, junction.sites, junction.vertex, false});
+    }
+    for (const TracedStructure::Curve& curve : structure_.curves) add_curve(curve);
+    for (const Sheet& sheet : joined_sheets()) {
+      if (part_ == VoronoiPart::medial_axis && is_domain_wall(sheet)) continue;
+      if (!add_sheet(sheet)) return std::nullopt;
+      throw_if_cancelled(context_);
+    }
+    if (part_ == VoronoiPart::all) add_surface();
+    return finish();
+  }
+
+ private:
+  /// Lists the triangles of each face.
+  void list_triangles() {
+    triangles_of_.resize(sites_.size());
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) triangles_of_[sites_.face_of(t)].push_back(t);
+  }
+
+  /// Adds the points of a curve between its ends.
+  void add_curve(const TracedStructure::Curve& curve) {
+    std::vector<std::uint32_t>& list = points_of_curve_.emplace_back();
+    list.push_back(curve.ends[0]);
+    if (!curve.is_edge) {
+      vertices_[curve.ends[0]].is_junction = vertices_[curve.ends[1]].is_junction = true;
+      std::vector<Vec3d> dense{curve.points[0]};
+      for (std::size_t k = 1; k < curve.points.size(); ++k)
+        divide(curve, curve.points[k - 1], curve.points[k], 0, dense);
+      std::vector<bool> is_kept(dense.size(), false);
+      is_kept.front() = is_kept.back() = true;
+      keep(dense, 0, dense.size() - 1, is_kept);
+      for (std::size_t k = 1; k + 1 < dense.size(); ++k) {
+        if (!is_kept[k]) continue;
+        list.push_back(static_cast<std::uint32_t>(vertices_.size()));
+        vertices_.push_back({dense[k], curve.curve.sites, none, false});
+      }
+    }
+    list.push_back(curve.ends[1]);
+  }
+
+  /// Adds points of a curve after a, up to b, so that chords are close to the curve.
+  void divide(const TracedStructure::Curve& curve, const Vec3d& a, const Vec3d& b, int depth,
+              std::vector<Vec3d>& out) const {
+    constexpr int most_depth = 12;
+    const Vec3d way = b - a;
+    const double size = length(way);
+    if (depth < most_depth && size > chord_) {
+      const Vec3d middle = a + way * 0.5;
+      const auto found = tracer_.point_in_plane(curve.curve, middle, way / size);
+      if (found && length(*found - middle) < size && length(*found - middle) > 0.5 * chord_) {
+        divide(curve, a, *found, depth + 1, out);
+        divide(curve, *found, b, depth + 1, out);
+        return;
+      }
+    }
+    out.push_back(b);
+  }
+
+  /// Marks the points that a polyline needs to stay within half the chord (Douglas and Peucker 1973).
+  void keep(const std::vector<Vec3d>& points, std::size_t first, std::size_t last, std::vector<bool>& is_kept) const {
+    if (last - first < 2) return;
+    const Vec3d way = points[last] - points[first];
+    const double squared = squared_length(way);
+    double most = 0;
+    std::size_t furthest = first + 1;
+    for (std::size_t k = first + 1; k < last; ++k) {
+      const Vec3d step = points[k] - points[first];
+      const double share = squared > 0 ? std::clamp(dot(step, way) / squared, 0.0, 1.0) : 0;
+      const double away = length(step - way * share);
+      if (away > most) {
+        most = away;
+        furthest = k;
+      }
+    }
+    if (most <= 0.5 * chord_) return;
+    is_kept[furthest] = true;
+    keep(points, first, furthest, is_kept);
+    keep(points, furthest, last, is_kept);
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> vertices_of(const std::vector<TracedStructure::Side>& loop) const {
+    std::vector<std::uint32_t> out;
+    for (const TracedStructure::Side& side : loop) {
+      std::vector<std::uint32_t> list = points_of_curve_[side.curve];
+      if (!side.is_forward) std::reverse(list.begin(), list.end());
+      out.insert(out.end(), list.begin(), list.end() - 1);
+    }
+    return out;
+  }
+
+  /// Returns a point inside the longest curve of a sheet's boundary that is no edge of the polyhedron.
+  [[nodiscard]] Vec3d point_of(const Sheet& sheet) const {
+    Vec3d best;
+    double longest = -1;
+    for (const TracedStructure::Side& side : sheet.loops[0]) {
+      const TracedStructure::Curve& curve = structure_.curves[side.curve];
+      if (curve.is_edge) continue;
+      for (std::size_t k = 1; k < curve.points.size(); ++k) {
+        const double size = squared_length(curve.points[k] - curve.points[k - 1]);
+        if (size <= longest) continue;
+        longest = size;
+        best = 0.5 * (curve.points[k] + curve.points[k - 1]);
+      }
+    }
+    return best;
+  }
+
+  /// Returns true if a site's own border separates its region from that of its neighbour: both have one footprint.
+  [[nodiscard]] bool is_domain_wall(const Sheet& sheet) const {
+    const TracedSite& a = sites_[sheet.first];
+    const TracedSite& b = sites_[sheet.second];
+    if (a.kind == b.kind) {
+      // Two edges on one line, in the plane through their common end.
+      return a.kind == SiteKind::edge && length(cross(a.direction, b.direction)) < 1e-9 &&
+             squared_length(cross(b.point - a.point, a.direction)) < 1e-18 * sites_.extent() * sites_.extent();
+    }
+    if (a.kind == SiteKind::face && b.kind == SiteKind::vertex) return false;
+    return std::includes(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end()) ||
+           std::includes(b.vertices.begin(), b.vertices.end(), a.vertices.begin(), a.vertices.end());
+  }
+
+  /// Returns the normal of a planar sheet.
+  [[nodiscard]] std::optional<Vec3d> normal_of(const Sheet& sheet) const {
+    const TracedSite& a = sites_[sheet.first];
+    const TracedSite& b = sites_[sheet.second];
+    if (is_domain_wall(sheet)) {
+      if (a.kind == SiteKind::face) return cross(b.direction, a.direction);
+      if (b.kind == SiteKind::face) return cross(a.direction, b.direction);
+      return a.kind == SiteKind::edge ? a.direction : b.direction;
+    }
+    if (a.kind == SiteKind::face && b.kind == SiteKind::face) return unit(a.direction - b.direction);
+    if (a.kind == SiteKind::vertex && b.kind == SiteKind::vertex) return unit(a.point - b.point);
+    const TracedSurface surface = tracer_.between(sheet.first, sheet.second, point_of(sheet));
+    return surface.is_plane() ? std::optional(surface.normal) : std::nullopt;
+  }
+
+  [[nodiscard]] std::vector<Vec3d> points_of(const std::vector<TracedStructure::Side>& loop) const {
+    std::vector<Vec3d> out;
+    for (const std::uint32_t v : vertices_of(loop)) out.push_back(vertices_[v].at);
+    return out;
+  }
+
+  /// Returns the sheets. Loops of one pair of sites are one sheet if one encloses the others.
+  [[nodiscard]] std::vector<Sheet> joined_sheets() const {
+    std::map<std::pair<Index, Index>, std::vector<std::size_t>> by_pair;
+    for (std::size_t k = 0; k < structure_.sheets.size(); ++k) {
+      by_pair[{structure_.sheets[k].first, structure_.sheets[k].second}].push_back(k);
+    }
+    std::vector<Sheet> out;
+    for (const auto& [pair, list] : by_pair) {
+      if (list.size() == 1) {
+        out.push_back(structure_.sheets[list[0]]);
+      } else {
+        join(list, out);
+      }
+    }
+    return out;
+  }
+
+  void join(const std::vector<std::size_t>& list, std::vector<Sheet>& out) const {
+    struct Loop {
+      std::size_t sheet;
+      std::vector<WallMap::Point> plane;
+      double area;
+      std::size_t depth = 0;
+      std::size_t parent = static_cast<std::size_t>(-1);
+    };
+    std::vector<Loop> loops;
+    // Sheets of one pair may lie in two planes.
+    std::vector<Vec3d> sample;
+    for (const std::size_t k : list) {
+      for (const Vec3d& x : points_of(structure_.sheets[k].loops[0])) sample.push_back(x);
+    }
+    std::vector<std::optional<Vec3d>> normals;
+    for (const std::size_t k : list) normals.push_back(normal_of(structure_.sheets[k]));
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::vector<Vec3d> points = points_of(structure_.sheets[list[k]].loops[0]);
+      const WallMap map(sites_, structure_.sheets[list[k]].first, structure_.sheets[list[k]].second, normals[k],
+                        sample);
+      Loop loop{list[k], {}, 0};
+      for (const Vec3d& x : points) loop.plane.push_back(map.to_plane(x));
+      loop.area = std::abs(detail::doubled_area(loop.plane));
+      loops.push_back(std::move(loop));
+    }
+    const auto is_same_plane = [&](std::size_t a, std::size_t b) {
+      return !normals[a] || length(cross(*normals[a], *normals[b])) < 1e-6;
+    };
+    for (std::size_t a = 0; a < loops.size(); ++a) {
+      for (std::size_t b = 0; b < loops.size(); ++b) {
+        if (a == b || !(loops[b].area > loops[a].area) || !is_same_plane(a, b)) continue;
+        if (!is_inside(loops[a].plane, loops[b].plane)) continue;
+        ++loops[a].depth;
+        if (loops[a].parent == static_cast<std::size_t>(-1) || loops[b].area < loops[loops[a].parent].area) {
+          loops[a].parent = b;
+        }
+      }
+    }
+    std::vector<std::size_t> number(loops.size());
+    for (std::size_t a = 0; a < loops.size(); ++a) {
+      if (loops[a].depth % 2 != 0) continue;
+      number[a] = out.size();
+      out.push_back(structure_.sheets[loops[a].sheet]);
+    }
+    for (std::size_t a = 0; a < loops.size(); ++a) {
+      if (loops[a].depth % 2 == 0) continue;
+      out[number[loops[a].parent]].loops.push_back(structure_.sheets[loops[a].sheet].loops[0]);
+    }
+  }
+
+  /// Returns true if most points of a loop lie inside another one. The loops do not cross, but may touch.
+  static bool is_inside(const std::vector<WallMap::Point>& loop, const std::vector<WallMap::Point>& other) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      // Middles of edges: corners may be common to both loops.
+      const WallMap::Point& before = loop[(i + loop.size() - 1) % loop.size()];
+      const WallMap::Point p{0.5 * (loop[i][0] + before[0]), 0.5 * (loop[i][1] + before[1])};
+      bool is_in = false;
+      for (std::size_t k = 0; k < other.size(); ++k) {
+        const WallMap::Point& a = other[k];
+        const WallMap::Point& b = other[(k + 1) % other.size()];
+        if ((a[1] > p[1]) == (b[1] > p[1])) continue;
+        if (p[0] < a[0] + (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1])) is_in = !is_in;
+      }
+      if (is_in) ++count;
+    }
+    return 2 * count > loop.size();
+  }
+
+  bool add_sheet(const Sheet& sheet) {
+    std::vector<std::vector<Vec3d>> loops;
+    std::vector<std::uint32_t> number;
+    for (const std::vector<TracedStructure::Side>& loop : sheet.loops) {
+      const std::vector<std::uint32_t> list = vertices_of(loop);
+      number.insert(number.end(), list.begin(), list.end());
+      loops.push_back(points_of(loop));
+      if (list.size() < 3) return false;
+    }
+    const WallMap map(sites_, sheet.first, sheet.second, normal_of(sheet), loops[0]);
+    const auto made = sheet_triangles(map, loops, chord_, context_);
+    if (!made) return false;
+    std::vector<Index> pair{std::min(sheet.first, sheet.second), std::max(sheet.first, sheet.second)};
+    for (std::size_t k = number.size(); k < made->points.size(); ++k) {
+      number.push_back(static_cast<std::uint32_t>(vertices_.size()));
+      vertices_.push_back({made->points[k], pair, none, false});
+    }
+    // Triangles have one orientation in the plane. The largest one shows which side faces the second site.
+    double largest = -1;
+    bool is_turned = false;
+    for (const Triangle& t : made->triangles) {
+      const Vec3d& a = made->points[t[0]];
+      const Vec3d normal = cross(made->points[t[1]] - a, made->points[t[2]] - a);
+      if (squared_length(normal) <= largest) continue;
+      largest = squared_length(normal);
+      const Vec3d middle = (a + made->points[t[1]] + made->points[t[2]]) / 3.0;
+      is_turned = dot(normal, towards_second(sheet, middle)) < 0;
+    }
+    for (Triangle t : made->triangles) {
+      if (is_turned) std::swap(t[1], t[2]);
+      const Vec3d middle = (made->points[t[0]] + made->points[t[1]] + made->points[t[2]]) / 3.0;
+      const double angle = is_domain_wall(sheet) ? 0
+                                                 : degrees_between(sites_.gradient(sheet.first, middle),
+                                                                   sites_.gradient(sheet.second, middle));
+      add_triangle({number[t[0]], number[t[1]], number[t[2]]}, sites_[sheet.first].number, sites_[sheet.second].number,
+                   angle);
+    }
+    return true;
+  }
+
+  /// Returns a direction from a sheet into the region of its second site.
+  [[nodiscard]] Vec3d towards_second(const Sheet& sheet, const Vec3d& at) const {
+    if (!is_domain_wall(sheet)) return sites_.gradient(sheet.first, at) - sites_.gradient(sheet.second, at);
+    const TracedSite& a = sites_[sheet.first];
+    const TracedSite& b = sites_[sheet.second];
+    // The smaller site of the two has a side in the wall.
+    const bool is_first = b.kind == SiteKind::face || (a.kind == SiteKind::vertex && b.kind == SiteKind::edge);
+    const TracedSite& owner = is_first ? a : b;
+    const DomainSide* best = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    const Vec3d wall = *normal_of(sheet);
+    for (const DomainSide& side : owner.sides) {
+      const double away = std::abs(side.height(at)) + sites_.extent() * length(cross(side.normal, wall));
+      if (away >= least) continue;
+      least = away;
+      best = &side;
+    }
+    return is_first ? -best->normal : best->normal;
+  }
+
+  void add_surface() {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const Triangle& corners = mesh_.triangles[t];
+      // Seen from the region, corners run clockwise in the mesh.
+      add_triangle({corners[0], corners[2], corners[1]}, -1, sites_[sites_.face_of(t)].number, 0);
+    }
+  }
+
+  void add_triangle(const Triangle& corners, std::int32_t a, std::int32_t b, double angle) {
+    triangles_.push_back(corners);
+    if (a > b) {
+      std::swap(a, b);
+      std::swap(triangles_.back()[1], triangles_.back()[2]);
+    }
+    site_a_.push_back(a);
+    site_b_.push_back(b);
+    angle_.push_back(static_cast<float>(angle));
+  }
+
+  /// Returns the element of the mesh that is the footprint on a site.
+  [[nodiscard]] SiteId element_at(Index i, const Vec3d& foot) const {
+    const TracedSite& site = sites_[i];
+    if (site.kind != SiteKind::face) return table_.id({site.kind, site.triangle_or_element});
+    std::uint32_t best = triangles_of_[i].front();
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t t : triangles_of_[i]) {
+      const double squared = squared_length(closest_point_on_triangle(foot, triangle_corners(mesh_, t)) - foot);
+      if (!(squared < least)) continue;
+      least = squared;
+      best = t;
+      if (squared == 0) break;
+    }
+    return table_.id({SiteKind::face, best});
+  }
+
+  struct Footprints {
+    std::array<Vec3d, 2> at;
+    std::array<SiteId, 2> sites;
+    double radius = 0;
+    double angle = 0;
+  };
+
+  [[nodiscard]] Footprints footprints_of(const Vertex& vertex) const {
+    Footprints out;
+    if (vertex.sites.empty()) {
+      const SiteId own = table_.id({SiteKind::vertex, vertex.on});
+      return {{vertex.at, vertex.at}, {own, own}, 0, 0};
+    }
+    std::array<Index, 2> widest{vertex.sites[0], vertex.sites[0]};
+    double least = 2;
+    for (std::size_t a = 0; a < vertex.sites.size(); ++a) {
+      for (std::size_t b = a + 1; b < vertex.sites.size(); ++b) {
+        const double cosine =
+            dot(sites_.gradient(vertex.sites[a], vertex.at), sites_.gradient(vertex.sites[b], vertex.at));
+        if (cosine >= least) continue;
+        least = cosine;
+        widest = {vertex.sites[a], vertex.sites[b]};
+      }
+    }
+    out.radius = std::max(0.0, sites_.distance(widest[0], vertex.at));
+    out.angle = degrees_between(sites_.gradient(widest[0], vertex.at), sites_.gradient(widest[1], vertex.at));
+    for (const std::size_t which : {0U, 1U}) {
+      out.at[which] = sites_.foot(widest[which], vertex.at);
+      out.sites[which] = element_at(widest[which], out.at[which]);
+    }
+    return out;
+  }
+
+  Complex finish() {
+    // Vertices of the mesh that nothing uses are left out.
+    std::vector<std::uint32_t> number(vertices_.size(), none);
+    std::vector<const Vertex*> used;
+    for (Triangle& t : triangles_) {
+      for (std::uint32_t& v : t) {
+        if (number[v] == none) {
+          number[v] = static_cast<std::uint32_t>(used.size());
+          used.push_back(&vertices_[v]);
+        }
+        v = number[v];
+      }
+    }
+    Complex out;
+    for (const Vertex* vertex : used) out.positions.push_back(vertex->at);
+    out.triangles = std::move(triangles_);
+    out.vertex_columns = Columns(out.positions.size());
+    out.triangle_columns = Columns(out.triangles.size());
+    std::vector<Footprints> found;
+    for (const Vertex* vertex : used) found.push_back(footprints_of(*vertex));
+    const auto fill = [&]<class T>(std::span<T> column, const auto& value) {
+      for (std::size_t k = 0; k < used.size(); ++k) column[k] = value(k);
+    };
+    Columns& columns = out.vertex_columns;
+    fill(columns.add<double>(std::string(medial_columns::radius)), [&](std::size_t k) { return found[k].radius; });
+    for (const std::size_t which : {0U, 1U}) {
+      const std::span<double> column = columns.add<double>(std::string(medial_columns::footprints[which]), 3);
+      for (std::size_t k = 0; k < used.size(); ++k) {
+        for (std::size_t axis = 0; axis < 3; ++axis) column[3 * k + axis] = found[k].at[which][axis];
+      }
+    }
+    for (const std::size_t which : {0U, 1U}) {
+      fill(columns.add<std::int32_t>(std::string(medial_columns::sites[which])),
+           [&](std::size_t k) { return static_cast<std::int32_t>(found[k].sites[which].value); });
+    }
+    fill(columns.add<double>(std::string(medial_columns::separation_angle)),
+         [&](std::size_t k) { return found[k].angle; });
+    fill(columns.add<std::int32_t>("junction"), [&](std::size_t k) { return used[k]->is_junction ? 1 : 0; });
+    out.triangle_columns.add({"site_a", 1, std::move(site_a_)});
+    out.triangle_columns.add({"site_b", 1, std::move(site_b_)});
+    out.triangle_columns.add({std::string(medial_columns::separation_angle), 1, std::move(angle_)});
+    return out;
+  }
+
+  const MeshView& mesh_;
+  const SiteTable& table_;
+  const TracedSites& sites_;
+  const TracedStructure& structure_;
+  const VoronoiPart part_;
+  const double chord_;
+  const Context& context_;
+  const SeamTracer tracer_;
+  std::vector<std::vector<std::uint32_t>> triangles_of_;     ///< of each face
+  std::vector<std::vector<std::uint32_t>> points_of_curve_;  ///< vertices, both ends included
+  std::vector<Vertex> vertices_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::int32_t> site_a_, site_b_;
+  std::vector<float> angle_;
+};
+
+}  // namespace
+
+std::optional<Complex> traced_complex(const MeshView& mesh, const SiteTable& table, const TracedSites& sites,
+                                      const TracedStructure& structure, VoronoiPart part, double chord,
+                                      const Context& context) {
+  return Assembly(mesh, table, sites, structure, part, chord, context).build();
+}
+
+}  // namespace blum::voronoi

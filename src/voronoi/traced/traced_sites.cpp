@@ -1,0 +1,379 @@
+#include "voronoi/traced/traced_sites.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "blum/core/sort_unique.hpp"
+#include "blum/core/union_find.hpp"
+#include "voronoi/label_geometry.hpp"
+
+namespace blum::voronoi {
+
+/// Distances that count as 0, relative to the size of the solid.
+constexpr double relative_tolerance = 1e-10;
+
+/// Builds the sites. Coordinates are relative to the first vertex.
+class SiteFinder {
+ public:
+  SiteFinder(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, double flatness)
+      : mesh_(mesh), table_(table), sites_(sites), flatness_(flatness) {}
+
+  std::optional<TracedSites> find() {
+    place();
+    if (!add_faces() || !add_edges() || !add_vertices()) return std::nullopt;
+    for (TracedSite& site : out_.sites_) detail::sort_unique(site.vertices);
+    return std::move(out_);
+  }
+
+ private:
+  using Index = TracedSites::Index;
+  static constexpr Index none = 0xffffffff;
+
+  void place() {
+    const Box3 box = bounds(mesh_);
+    out_.extent_ = box.diagonal();
+    out_.tolerance_ = std::max(relative_tolerance * out_.extent_, 4 * flatness_);
+    out_.vertices_.assign(mesh_.vertices.begin(), mesh_.vertices.end());
+  }
+
+  [[nodiscard]] std::uint32_t apex(std::uint32_t t, const Segment& ends) const {
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      if (v != ends[0] && v != ends[1]) return v;
+    }
+    return ends[0];
+  }
+
+  /// Returns true if the two triangles of an edge lie in one plane.
+  [[nodiscard]] bool is_flat(std::uint32_t edge) const {
+    if (sites_.turn[edge] == EdgeTurn::flat) return true;
+    if (flatness_ == 0) return false;
+    const auto [first, second] = sites_.triangles_of[edge];
+    const auto height = [&](std::uint32_t of, std::uint32_t above) {
+      const auto [a, b, c] = triangle_corners(mesh_, above);
+      const Vec3d normal = unit_normal(a, b, c);
+      return std::abs(dot(normal, mesh_.vertices[apex(of, table_.edges()[edge])] - a));
+    };
+    const auto normal_of = [&](std::uint32_t t) {
+      const auto [a, b, c] = triangle_corners(mesh_, t);
+      return unit_normal(a, b, c);
+    };
+    return std::min(height(first, second), height(second, first)) <= flatness_ &&
+           dot(normal_of(first), normal_of(second)) > 0;
+  }
+
+  bool add_faces() {
+    const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+    detail::UnionFind joined(count);
+    is_flat_.resize(table_.edge_count());
+    for (std::uint32_t e = 0; e < is_flat_.size(); ++e) {
+      is_flat_[e] = is_flat(e);
+      if (is_flat_[e]) joined.join(sites_.triangles_of[e][0], sites_.triangles_of[e][1]);
+    }
+    out_.face_of_.assign(count, none);
+    std::vector<double> largest;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      const std::uint32_t root = joined.find(t);
+      if (out_.face_of_[root] == none) {
+        out_.face_of_[root] = static_cast<Index>(out_.sites_.size());
+        TracedSite& face = out_.sites_.emplace_back();
+        face.number = static_cast<std::int32_t>(sites_.face_of[t]);
+        face.triangle_or_element = t;
+        largest.push_back(0);
+      }
+      const Index own = out_.face_of_[t] = out_.face_of_[root];
+      TracedSite& face = out_.sites_[own];
+      face.number = std::min(face.number, static_cast<std::int32_t>(sites_.face_of[t]));
+      const auto [a, b, c] = triangle_corners(mesh_, t);
+      const double area = length(cross(b - a, c - a));
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        face.vertices.push_back(v);
+        face.box.extend(mesh_.vertices[v]);
+      }
+      if (area <= largest[own]) continue;
+      largest[own] = area;
+      face.point = a;
+      face.direction = -unit_normal(a, b, c);
+    }
+    for (std::uint32_t t = 0; t < count; ++t) {
+      const TracedSite& face = out_.sites_[out_.face_of_[t]];
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        if (std::abs(dot(face.direction, mesh_.vertices[v] - face.point)) > 4 * flatness_ + 1e-13 * out_.extent_) {
+          return false;
+        }
+      }
+    }
+    for (TracedSite& face : out_.sites_) set_axes(face);
+    face_count_ = out_.sites_.size();
+    return true;
+  }
+
+  static void set_axes(TracedSite& face) {
+    const Vec3d& n = face.direction;
+    const Vec3d other = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : std::abs(n.y) < 0.6 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+    face.axes[0] = unit(cross(n, other));
+    face.axes[1] = cross(n, face.axes[0]);
+  }
+
+  /// Adds the boundaries of faces and the reflex edges.
+  bool add_edges() {
+    for (std::uint32_t e = 0; e < table_.edge_count(); ++e) {
+      if (is_flat_[e]) continue;
+      const auto [a, b] = table_.edges()[e];
+      const std::array<Index, 2> faces{out_.face_of_[sites_.triangles_of[e][0]],
+                                       out_.face_of_[sites_.triangles_of[e][1]]};
+      if (faces[0] == faces[1]) return false;
+      const bool is_reflex = sites_.turn[e] == EdgeTurn::reflex;
+      BorderEdge border{{a, b}, faces};
+      const Vec3d& p = mesh_.vertices[a];
+      const Vec3d& q = mesh_.vertices[b];
+      const Vec3d along = unit(q - p);
+      // The first triangle traverses the edge from a to b and has its inside on the left, as seen from outside.
+      const std::array<Vec3d, 2> into{unit(cross(along, out_.sites_[faces[0]].direction)),
+                                      -unit(cross(along, out_.sites_[faces[1]].direction))};
+      for (const std::size_t k : {0U, 1U}) {
+        TracedSite& face = out_.sites_[faces[k]];
+        const std::array<Vec3d, 2> ends = k == 0 ? std::array{p, q} : std::array{q, p};
+        face.sides.push_back({into[k], ends, is_reflex, plane_of(face, ends[0]), plane_of(face, ends[1])});
+      }
+      if (is_reflex) {
+        border.own = static_cast<Index>(out_.sites_.size());
+        TracedSite& site = out_.sites_.emplace_back();
+        site.kind = SiteKind::edge;
+        const auto place = std::lower_bound(sites_.reflex_edges.begin(), sites_.reflex_edges.end(), e);
+        site.number = static_cast<std::int32_t>(sites_.face_count) +
+                      static_cast<std::int32_t>(place - sites_.reflex_edges.begin());
+        site.triangle_or_element = e;
+        site.point = p;
+        site.direction = along;
+        site.length = length(q - p);
+        site.sides = {{-into[0], {p, p}}, {-into[1], {p, p}}, {along, {p, p}}, {-along, {q, q}}};
+        site.vertices = {a, b};
+        site.box.extend(p);
+        site.box.extend(q);
+      }
+      out_.edges_.push_back(border);
+    }
+    return true;
+  }
+
+  static std::array<double, 2> plane_of(const TracedSite& face, const Vec3d& p) {
+    return {dot(face.axes[0], p - face.point), dot(face.axes[1], p - face.point)};
+  }
+
+  /// Adds vertices whose dual cone has an interior inside the solid.
+  bool add_vertices() {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> at;
+    for (std::uint32_t k = 0; k < out_.edges_.size(); ++k) {
+      for (const std::uint32_t v : out_.edges_[k].vertices) at[v].push_back(k);
+    }
+    for (const auto& [v, list] : at) {
+      std::vector<Vec3d> directions;
+      for (const std::uint32_t k : list) {
+        const auto [a, b] = out_.edges_[k].vertices;
+        directions.push_back(unit(mesh_.vertices[a == v ? b : a] - mesh_.vertices[v]));
+      }
+      add_vertex(v, list, directions);
+    }
+    return true;
+  }
+
+  void add_vertex(std::uint32_t v, const std::vector<std::uint32_t>& list, const std::vector<Vec3d>& directions) {
+    if (std::none_of(list.begin(), list.end(), [&](std::uint32_t k) { return out_.edges_[k].is_reflex(); })) return;
+    constexpr double flat = 1e-7;
+    Vec3d middle;
+    std::vector<std::size_t> bounding;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      std::size_t rays = 0;
+      Vec3d first;
+      for (std::size_t j = 0; j < directions.size(); ++j) {
+        if (i == j) continue;
+        Vec3d ray = cross(directions[i], directions[j]);
+        if (length(ray) < flat) continue;
+        ray = unit(ray);
+        for (const double sign : {1.0, -1.0}) {
+          const Vec3d w = ray * sign;
+          if (std::any_of(directions.begin(), directions.end(), [&](const Vec3d& d) { return dot(w, d) > flat; })) {
+            continue;
+          }
+          if (rays == 0 || length(w - first) > flat) ++rays;
+          if (rays == 1) first = w;
+          middle += w;
+        }
+      }
+      if (rays > 1) bounding.push_back(i);
+    }
+    if (bounding.size() < 3 || length(middle) == 0) return;
+    const Vec3d inner = unit(middle);
+    if (std::any_of(directions.begin(), directions.end(), [&](const Vec3d& d) { return dot(inner, d) > -flat; }))
+      return;
+    if (!std::all_of(bounding.begin(), bounding.end(),
+                     [&](std::size_t i) { return out_.edges_[list[i]].is_reflex(); })) {
+      return;
+    }
+    TracedSite& site = out_.sites_.emplace_back();
+    site.kind = SiteKind::vertex;
+    const auto place = std::lower_bound(sites_.reflex_vertices.begin(), sites_.reflex_vertices.end(), v);
+    site.number = static_cast<std::int32_t>(sites_.face_count + sites_.reflex_edges.size()) +
+                  static_cast<std::int32_t>(place - sites_.reflex_vertices.begin());
+    site.triangle_or_element = v;
+    site.point = mesh_.vertices[v];
+    site.direction = inner;
+    for (const std::size_t i : bounding) site.sides.push_back({-directions[i], {site.point, site.point}});
+    site.vertices = {v};
+    site.box.extend(site.point);
+  }
+
+  const MeshView& mesh_;
+  const SiteTable& table_;
+  const PolyhedronSites& sites_;
+  const double flatness_;
+  std::vector<bool> is_flat_;
+  std::size_t face_count_ = 0;
+  TracedSites out_;
+};
+
+std::optional<TracedSites> TracedSites::of(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                                           double flatness) {
+  return SiteFinder(mesh, table, sites, flatness).find();
+}
+
+std::size_t TracedSites::face_count() const {
+  return static_cast<std::size_t>(
+      std::count_if(sites_.begin(), sites_.end(), [](const TracedSite& site) { return site.kind == SiteKind::face; }));
+}
+
+std::size_t TracedSites::hole_count() const {
+  std::size_t holes = 0;
+  for (const TracedSite& site : sites_) {
+    if (site.kind != SiteKind::face) continue;
+    // Sides of one loop are connected. A face that touches itself at a vertex counts as one loop there.
+    detail::UnionFind joined(static_cast<std::uint32_t>(site.sides.size()));
+    std::map<std::tuple<double, double, double>, std::uint32_t> first;
+    std::size_t loops = site.sides.size();
+    for (std::uint32_t k = 0; k < site.sides.size(); ++k) {
+      for (const Vec3d& end : site.sides[k].ends) {
+        const auto [place, is_new] = first.try_emplace({end.x, end.y, end.z}, k);
+        if (is_new || joined.find(place->second) == joined.find(k)) continue;
+        joined.join(place->second, k);
+        --loops;
+      }
+    }
+    holes += loops - 1;
+  }
+  return holes;
+}
+
+double TracedSites::distance(Index i, const Vec3d& x) const {
+  const TracedSite& site = sites_[i];
+  const Vec3d step = x - site.point;
+  if (site.kind == SiteKind::face) return dot(site.direction, step);
+  if (site.kind == SiteKind::edge) return length(cross(site.direction, step));
+  return length(step);
+}
+
+Vec3d TracedSites::foot(Index i, const Vec3d& x) const {
+  const TracedSite& site = sites_[i];
+  const Vec3d step = x - site.point;
+  if (site.kind == SiteKind::face) return x - site.direction * dot(site.direction, step);
+  if (site.kind == SiteKind::edge) return site.point + site.direction * dot(site.direction, step);
+  return site.point;
+}
+
+Vec3d TracedSites::gradient(Index i, const Vec3d& x) const {
+  const TracedSite& site = sites_[i];
+  if (site.kind == SiteKind::face) return site.direction;
+  return unit(x - foot(i, x));
+}
+
+double TracedSites::outside_polygon(const TracedSite& face, const Vec3d& x) const {
+  const double px = dot(face.axes[0], x - face.point);
+  const double py = dot(face.axes[1], x - face.point);
+  bool is_inside = false;
+  double least = std::numeric_limits<double>::infinity();  // squared
+  for (const DomainSide& side : face.sides) {
+    const double ax = side.from[0] - px, ay = side.from[1] - py;
+    const double bx = side.to[0] - px, by = side.to[1] - py;
+    if ((ay > 0) != (by > 0) && (bx * ay - ax * by) / (ay - by) > 0) is_inside = !is_inside;
+    const double dx = bx - ax, dy = by - ay;
+    const double t = std::clamp(-(ax * dx + ay * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+    const double qx = ax + t * dx, qy = ay + t * dy;
+    least = std::min(least, qx * qx + qy * qy);
+  }
+  return is_inside ? 0 : std::sqrt(least);
+}
+
+double TracedSites::outside(Index i, const Vec3d& x) const {
+  const TracedSite& site = sites_[i];
+  if (site.kind == SiteKind::face) return outside_polygon(site, x);
+  double most = 0;
+  for (const DomainSide& side : site.sides) most = std::max(most, -side.height(x));
+  return most;
+}
+
+double TracedSites::least_distance(Index i, const Vec3d& x) const {
+  const TracedSite& site = sites_[i];
+  if (site.kind == SiteKind::face) return std::hypot(distance(i, x), outside_polygon(site, x));
+  if (site.kind == SiteKind::edge) {
+    const double t = dot(site.direction, x - site.point);
+    return std::hypot(distance(i, x), std::max({0.0, -t, t - site.length}));
+  }
+  return distance(i, x);
+}
+
+std::vector<const DomainSide*> TracedSites::sides_at(Index i, const Vec3d& x, double tolerance) const {
+  const TracedSite& site = sites_[i];
+  std::vector<const DomainSide*> out;
+  if (site.kind == SiteKind::face) {
+    const Vec3d q = foot(i, x);
+    for (const DomainSide& side : site.sides) {
+      const Vec3d along = side.ends[1] - side.ends[0];
+      const double t = std::clamp(dot(q - side.ends[0], along) / squared_length(along), 0.0, 1.0);
+      if (length(side.ends[0] + along * t - q) <= tolerance) out.push_back(&side);
+    }
+    return out;
+  }
+  for (const DomainSide& side : site.sides) {
+    if (std::abs(side.height(x)) <= tolerance) out.push_back(&side);
+  }
+  return out;
+}
+
+bool TracedSites::leads_inside(Index i, const std::vector<const DomainSide*>& sides, const Vec3d& h,
+                               double tolerance) const {
+  const auto is_inside = [&](const DomainSide* side) { return dot(side->normal, h) >= -tolerance; };
+  if (sites_[i].kind != SiteKind::face || sides.size() != 2) {
+    return std::all_of(sides.begin(), sides.end(), is_inside);
+  }
+  // At a corner of a face: beyond one of two sides if the corner is concave.
+  const Vec3d first = sides[0]->ends[1] - sides[0]->ends[0];
+  const Vec3d second = sides[1]->ends[1] - sides[1]->ends[0];
+  const bool is_in_order = sides[0]->ends[1] == sides[1]->ends[0];
+  const double turn = dot(sites_[i].direction, cross(first, second)) * (is_in_order ? 1 : -1);
+  // Seen from inside, the boundary runs clockwise.
+  if (turn < 0) return is_inside(sides[0]) && is_inside(sides[1]);
+  return is_inside(sides[0]) || is_inside(sides[1]);
+}
+
+TracedSites::Closest TracedSites::closest(const Vec3d& x, double tolerance) const {
+  Closest out;
+  std::vector<std::pair<double, Index>> found;
+  for (Index i = 0; i < sites_.size(); ++i) {
+    const TracedSite& site = sites_[i];
+    const Vec3d q = max(site.box.lower, min(site.box.upper, x));
+    const double reach = out.radius + tolerance;
+    if (squared_length(q - x) > reach * reach) continue;
+    const double d = distance(i, x);
+    if (!(d >= -tolerance) || d > reach || outside(i, x) > tolerance) continue;
+    found.emplace_back(d, i);
+    out.radius = std::min(out.radius, d);
+  }
+  for (const auto& [d, i] : found) {
+    if (d <= out.radius + tolerance) out.sites.push_back(i);
+  }
+  return out;
+}
+
+}  // namespace blum::voronoi

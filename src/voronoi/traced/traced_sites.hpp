@@ -1,0 +1,111 @@
+// Blum: sites of a polyhedron for the tracing of seams. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
+
+namespace blum::voronoi {
+
+/// A plane that bounds the domain of a site: the points whose closest point of the site's plane, line or point belongs
+/// to the site.
+struct DomainSide {
+  Vec3d normal;                  ///< unit vector towards the domain; for a face, in its plane
+  std::array<Vec3d, 2> ends;     ///< for a face: the ends of the side; otherwise, both are a point of the plane
+  bool is_open = true;           ///< false at convex edges, which no closest point inside the solid passes
+  std::array<double, 2> from{};  ///< for a face: ends[0] in the coordinates of its plane
+  std::array<double, 2> to{};    ///< for a face: ends[1] in the coordinates of its plane
+
+  [[nodiscard]] double height(const Vec3d& q) const { return dot(normal, q - ends[0]); }
+};
+
+/// Face, reflex edge or reflex vertex.
+struct TracedSite {
+  SiteKind kind = SiteKind::face;
+  std::int32_t number = 0;                ///< as in voronoi_sites()
+  Vec3d point;                            ///< of the plane; the first end of an edge; the vertex
+  Vec3d direction;                        ///< unit vector: of a face, into the solid; along an edge
+  std::array<Vec3d, 2> axes;              ///< of a face: coordinates in its plane. Otherwise unused
+  double length = 0;                      ///< of an edge
+  std::vector<DomainSide> sides;          ///< of a face: its whole boundary
+  std::vector<std::uint32_t> vertices;    ///< vertices of the mesh that the site contains, ascending
+  std::uint32_t triangle_or_element = 0;  ///< a triangle of the face; the edge or vertex of the SiteTable
+  Box3 box;
+};
+
+/// A convex edge, at which the sheet between its two faces ends. Or a reflex edge, at which two walls end.
+struct BorderEdge {
+  std::array<std::uint32_t, 2> vertices;
+  std::array<std::uint32_t, 2> faces;  ///< sites
+  std::uint32_t own = 0xffffffff;      ///< site of a reflex edge
+  [[nodiscard]] bool is_reflex() const { return own != 0xffffffff; }
+};
+
+/// The sites of a polyhedron, and the functions of their distances.
+class TracedSites {
+ public:
+  using Index = std::uint32_t;
+
+  /// Returns nothing if joined triangles are not flat, or a vertex is not simple enough.
+  /// @param flatness  triangles whose corners lie within this distance of one plane are one face, mesh units.
+  static std::optional<TracedSites> of(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                                       double flatness);
+
+  [[nodiscard]] const std::vector<TracedSite>& all() const { return sites_; }
+  [[nodiscard]] const TracedSite& operator[](Index i) const { return sites_[i]; }
+  [[nodiscard]] std::size_t size() const { return sites_.size(); }
+  [[nodiscard]] const std::vector<BorderEdge>& edges() const { return edges_; }
+  [[nodiscard]] const std::vector<Vec3d>& vertices() const { return vertices_; }
+  [[nodiscard]] std::size_t face_count() const;
+  /// Returns the number of holes in all faces together.
+  [[nodiscard]] std::size_t hole_count() const;
+  /// Returns the face of a triangle of the mesh.
+  [[nodiscard]] Index face_of(std::uint32_t triangle) const { return face_of_[triangle]; }
+  /// Returns the diagonal of the box around the solid.
+  [[nodiscard]] double extent() const { return extent_; }
+  /// Distances below this value, in mesh units, count as 0.
+  [[nodiscard]] double tolerance() const { return tolerance_; }
+
+  /// Returns the distance of x from the plane, line or point of a site. It is negative behind a face.
+  [[nodiscard]] double distance(Index i, const Vec3d& x) const;
+  /// Returns the closest point of the plane, line or point of a site.
+  [[nodiscard]] Vec3d foot(Index i, const Vec3d& x) const;
+  /// Returns the gradient of distance(), a unit vector.
+  [[nodiscard]] Vec3d gradient(Index i, const Vec3d& x) const;
+  /// Returns how far x lies outside of the domain of a site at least; 0 inside.
+  [[nodiscard]] double outside(Index i, const Vec3d& x) const;
+  /// Returns the distance of x from the site itself, or a lower bound on it.
+  [[nodiscard]] double least_distance(Index i, const Vec3d& x) const;
+  /// Returns the sides of a site's domain that contain x, within a tolerance.
+  [[nodiscard]] std::vector<const DomainSide*> sides_at(Index i, const Vec3d& x, double tolerance) const;
+  /// Returns true if the direction h from x leads into the domain of a site, or along its border.
+  [[nodiscard]] bool leads_inside(Index i, const std::vector<const DomainSide*>& sides, const Vec3d& h,
+                                  double tolerance) const;
+
+  /// The closest sites of a point.
+  struct Closest {
+    double radius = std::numeric_limits<double>::infinity();
+    std::vector<Index> sites;  ///< ascending: all within the tolerance of the radius
+  };
+  [[nodiscard]] Closest closest(const Vec3d& x, double tolerance) const;
+
+ private:
+  friend class SiteFinder;
+  [[nodiscard]] double outside_polygon(const TracedSite& face, const Vec3d& x) const;
+
+  std::vector<TracedSite> sites_;
+  std::vector<BorderEdge> edges_;
+  std::vector<Vec3d> vertices_;
+  std::vector<Index> face_of_;
+  double extent_ = 0;
+  double tolerance_ = 0;
+};
+
+}  // namespace blum::voronoi
