@@ -227,18 +227,18 @@ double chord_of(const VoronoiOptions& options, const Box3& box) {
 }
 
 /// Traces the diagram.
+/// @param flatness  triangles whose corners lie within this distance of one plane are one face, mesh units.
 /// @return the reason why this is impossible; empty if it succeeded.
-std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact,
+std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, double flatness,
                   const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
   const MeshView mesh = solid.surface().mesh;
-  const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(mesh);
   const std::optional<TracedSites> sites = TracedSites::of(mesh, table, exact, flatness);
   if (!sites) return "joined triangles are not flat";
   const TracedResult traced = traced_structure(*sites, context);
   timer.lap("traces");
   if (!traced.structure) {
-    return traced.problem + " near " + exact_text(traced.place.x) + ", " + exact_text(traced.place.y) + ", " +
-           exact_text(traced.place.z);
+    const Vec3d place = traced.place + sites->origin();
+    return traced.problem + " near " + exact_text(place.x) + ", " + exact_text(place.y) + ", " + exact_text(place.z);
   }
   const double chord = chord_of(options, bounds(mesh));
   const auto complex_of = [&](VoronoiPart part) {
@@ -286,7 +286,12 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
     }
   }
   if (options.method == VoronoiMethod::traced) {
-    report.trace_problem = trace(solid, table, sites, options, timer, out, context);
+    const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(mesh);
+    report.trace_problem = trace(solid, table, sites, flatness, options, timer, out, context);
+    if (!report.traced && flatness > 0) {
+      const std::string problem = trace(solid, table, sites, 0, options, timer, out, context);
+      if (report.traced) report.trace_problem = problem;
+    }
     if (report.traced) return out;
   }
   const VoronoiSolid sited(mesh, table, std::move(sites), options.part);

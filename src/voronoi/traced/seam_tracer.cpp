@@ -41,6 +41,9 @@ Vec3d SeamTracer::slope(const TracedSurface& surface, const Vec3d& x) const {
 }
 
 TracedSurface SeamTracer::between(Index first, Index second, const Vec3d& at) const {
+  if (const DomainSide* side = sites_.side_between(first, second)) {
+    return TracedSurface::plane(side->normal, side->ends[0]);
+  }
   const TracedSite& a = sites_[first];
   const TracedSite& b = sites_[second];
   if (a.kind == SiteKind::edge && b.kind == SiteKind::edge) {
@@ -108,7 +111,8 @@ std::optional<TracedCurve> SeamTracer::curve_of(const std::vector<Index>& found,
   for (std::size_t a = 0; a < found.size(); ++a) {
     const Vec3d own = sites_.gradient(found[a], at);
     for (std::size_t b = a + 1; b < found.size(); ++b) {
-      if (length(own - sites_.gradient(found[b], at)) > same_foot) {
+      if (sites_.side_between(found[a], found[b]) != nullptr ||
+          length(own - sites_.gradient(found[b], at)) > same_foot) {
         surfaces.push_back(between(found[a], found[b], at + towards * (1e-3 * sites_.distance(found[a], at))));
       }
     }
@@ -186,13 +190,11 @@ std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const 
   const double bend = 8 / std::max(radius, sites_.tolerance());
   // Returns the first positive root of a + b s - bend/2 s^2.
   const auto root = [&](double a, double b) { return (b + std::sqrt(b * b + 2 * bend * a)) / bend; };
-  for (Index i = 0; i < sites_.size(); ++i) {
-    if (contains(curve.sites, i)) continue;
+  sites_.for_each_within(x, reach, [&](Index i) {
+    if (contains(curve.sites, i)) return;
     const TracedSite& site = sites_[i];
-    const Vec3d q = max(site.box.lower, min(site.box.upper, x));
-    if (squared_length(q - x) > reach * reach) continue;
     const double beyond = sites_.outside(i, x);
-    if (beyond >= most) continue;
+    if (beyond >= most) return;
     const double gap = sites_.least_distance(i, x) - radius;
     double step = std::max(gap / 2, beyond);
     if (beyond > 0 && site.kind != SiteKind::face) {
@@ -206,7 +208,7 @@ std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const 
       step = std::max(step, root(gap, rate));
     }
     if (step < most) out.push_back({std::max(step, 0.0), i});
-  }
+  });
   std::sort(out.begin(), out.end(), [](const Room& a, const Room& b) { return a.step < b.step; });
   return out;
 }
@@ -229,6 +231,13 @@ std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site
   const double infinite = least;
   for (const DomainSide& side : sites_[site].sides) {
     if (side.is_open) consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
+  }
+  for (const Index own : curve.sites) {
+    for (const DomainSide& side : sites_[own].sides) {
+      if (side.is_open && std::abs(side.height(x)) < radius) {
+        consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
+      }
+    }
   }
   // At a side of its domain, the distance of a site touches that of its neighbour, and the side gives the place more
   // precisely.
@@ -277,6 +286,47 @@ bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec
   return true;
 }
 
+std::optional<Vec3d> SeamTracer::touching_point(const TracedCurve& curve, Index site, const Vec3d& x,
+                                                double radius) const {
+  // The distance of the site changes at this rate, relative to that of the curve's own sites.
+  const auto rate = [&](const Vec3d& at) {
+    return dot(sites_.gradient(site, at) - sites_.gradient(curve.sites[0], at), tangent(curve, at));
+  };
+  constexpr double crossing = 0.02;
+  double value = rate(x);
+  if (std::abs(value) > crossing) return std::nullopt;
+  // At a side of its domain, a site always touches its neighbour.
+  constexpr double same_foot = 1e-3;
+  const Vec3d own = sites_.gradient(site, x);
+  for (const Index i : curve.sites) {
+    if (length(sites_.gradient(i, x) - own) < same_foot) return std::nullopt;
+  }
+  const Vec3d along = tangent(curve, x);
+  const auto at = [&](double way) { return point_in_plane(curve, x + along * way, along); };
+  double way = 0;
+  double step = 1e-3 * radius;
+  Vec3d best = x;
+  constexpr int most_steps_of_secant = 12;
+  for (int k = 0; k < most_steps_of_secant; ++k) {
+    const auto next = at(way + step);
+    if (!next) return std::nullopt;
+    double other = rate(*next);
+    // The tangent of a curve has two directions.
+    if (dot(tangent(curve, *next), along) < 0) other = -other;
+    if (other == value) break;
+    const double last = way;
+    way += step;
+    step = -other * (way - last) / (other - value);
+    value = other;
+    best = *next;
+    if (!(std::abs(way + step) < 0.1 * radius)) return std::nullopt;
+    if (std::abs(step) < 1e-9 * radius) break;
+  }
+  const double gap = sites_.distance(site, best) - sites_.distance(curve.sites[0], best);
+  if (std::abs(gap) > sites_.tolerance() || sites_.outside(site, best) > sites_.tolerance()) return std::nullopt;
+  return best;
+}
+
 void SeamTracer::end_at_border(Trace& trace) const {
   trace.end = TraceEnd::border;
   constexpr double close = 1024;
@@ -290,7 +340,8 @@ void SeamTracer::end_at_border(Trace& trace) const {
   }
 }
 
-Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards) const {
+Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
+                        const std::vector<Index>& left) const {
   Trace out;
   out.points.push_back(start);
   Vec3d x = start;
@@ -323,12 +374,14 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
       const double size = length(*found - x);
       if (size > 2 * most) continue;
       const TracedSites::Closest there = sites_.closest(*found, tolerance);
+      if (there.sites == left && length(*found - start) <= sites_.blur(there.radius)) continue;
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
       });
       if (!is_first && !is_clear(curve, x, *found)) continue;
-      out.points.push_back(*found);
-      out.sites = there.sites;
+      const auto touched = touching_point(curve, near[r].site, *found, radius);
+      out.points.push_back(touched ? *touched : *found);
+      out.sites = touched ? sites_.closest(*touched, tolerance).sites : there.sites;
       out.end = TraceEnd::event;
       if (there.radius < touching * tolerance) end_at_border(out);
       return out;
@@ -337,13 +390,21 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
     if (step < 4 * tolerance) {
       if (way > 64 * tolerance && near.front().step <= 0.25 * tolerance) {
         // The curve touches a region without a clear crossing.
+        if (const auto touched = touching_point(curve, near.front().site, x, radius)) {
+          x = *touched;
+          out.points.back() = x;
+        }
         const TracedSites::Closest there = sites_.closest(x, 4 * tolerance);
-        out.sites = there.sites;
-        out.end = TraceEnd::event;
-        if (there.radius < touching * tolerance) end_at_border(out);
-        return out;
+        if (there.sites == left && length(x - start) <= sites_.blur(radius)) {
+          step = 0.1 * sites_.blur(radius);
+        } else {
+          out.sites = there.sites;
+          out.end = TraceEnd::event;
+          if (there.radius < touching * tolerance) end_at_border(out);
+          return out;
+        }
       }
-      step = 4 * tolerance;
+      step = std::max(step, 4 * tolerance);
     }
     std::optional<Vec3d> next;
     Vec3d turned;

@@ -57,7 +57,10 @@ class SeamTracer {
 
   /// @param start   a point of the curve.
   /// @param towards direction at the start; need not be a tangent.
-  [[nodiscard]] Trace trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards) const;
+  /// @param left    the closest sites of the start. Where curves touch, the start is not precise, so these sites may be
+  ///                equally close a little further on.
+  [[nodiscard]] Trace trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
+                            const std::vector<TracedSites::Index>& left) const;
   /// Returns the point of a curve in a plane, near a first guess.
   [[nodiscard]] std::optional<Vec3d> point_in_plane(const TracedCurve& curve, const Vec3d& guess,
                                                     const Vec3d& normal) const;
@@ -83,6 +86,9 @@ class SeamTracer {
   [[nodiscard]] std::optional<Vec3d> solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const;
   [[nodiscard]] std::optional<Vec3d> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                                 const Vec3d& along, double radius) const;
+  /// Returns the point near x where a curve touches the region of a site, if it does so within the tolerance.
+  [[nodiscard]] std::optional<Vec3d> touching_point(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
+                                                    double radius) const;
   /// Sets the end of a trace that reached the surface: at a vertex if one is close.
   void end_at_border(Trace& trace) const;
   /// Returns true if no other site is as close at points of the curve between two of its points.

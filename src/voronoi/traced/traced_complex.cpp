@@ -158,31 +158,29 @@ class Assembly {
 
   /// Returns true if a site's own border separates its region from that of its neighbour: both have one footprint.
   [[nodiscard]] bool is_domain_wall(const Sheet& sheet) const {
-    const TracedSite& a = sites_[sheet.first];
-    const TracedSite& b = sites_[sheet.second];
-    if (a.kind == b.kind) {
-      // Two edges on one line, in the plane through their common end.
-      return a.kind == SiteKind::edge && length(cross(a.direction, b.direction)) < 1e-9 &&
-             squared_length(cross(b.point - a.point, a.direction)) < 1e-18 * sites_.extent() * sites_.extent();
-    }
-    if (a.kind == SiteKind::face && b.kind == SiteKind::vertex) return false;
-    return std::includes(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end()) ||
-           std::includes(b.vertices.begin(), b.vertices.end(), a.vertices.begin(), a.vertices.end());
+    return sites_.side_between(sheet.first, sheet.second) != nullptr;
   }
 
   /// Returns the normal of a planar sheet.
   [[nodiscard]] std::optional<Vec3d> normal_of(const Sheet& sheet) const {
     const TracedSite& a = sites_[sheet.first];
     const TracedSite& b = sites_[sheet.second];
-    if (is_domain_wall(sheet)) {
-      if (a.kind == SiteKind::face) return cross(b.direction, a.direction);
-      if (b.kind == SiteKind::face) return cross(a.direction, b.direction);
-      return a.kind == SiteKind::edge ? a.direction : b.direction;
-    }
+    if (const DomainSide* side = sites_.side_between(sheet.first, sheet.second)) return side->normal;
     if (a.kind == SiteKind::face && b.kind == SiteKind::face) return unit(a.direction - b.direction);
     if (a.kind == SiteKind::vertex && b.kind == SiteKind::vertex) return unit(a.point - b.point);
     const TracedSurface surface = tracer_.between(sheet.first, sheet.second, point_of(sheet));
-    return surface.is_plane() ? std::optional(surface.normal) : std::nullopt;
+    if (!surface.is_plane()) return std::nullopt;
+    // Two edges from one vertex have two planes between them, at right angles. Where both footprints are the vertex,
+    // rounding decides; the boundary shows which plane it is.
+    const Vec3d other = cross(surface.normal, cross(a.direction, b.direction));
+    if (!(length(other) > 0)) return surface.normal;
+    const auto height = [&](const Vec3d& normal) {
+      double most = 0;
+      for (const Vec3d& x : points_of(sheet.loops[0])) most = std::max(most, std::abs(dot(normal, x - surface.point)));
+      return most;
+    };
+    const Vec3d second = unit(other);
+    return height(second) < height(surface.normal) ? second : surface.normal;
   }
 
   [[nodiscard]] std::vector<Vec3d> points_of(const std::vector<TracedStructure::Side>& loop) const {
@@ -319,22 +317,11 @@ class Assembly {
 
   /// Returns a direction from a sheet into the region of its second site.
   [[nodiscard]] Vec3d towards_second(const Sheet& sheet, const Vec3d& at) const {
-    if (!is_domain_wall(sheet)) return sites_.gradient(sheet.first, at) - sites_.gradient(sheet.second, at);
-    const TracedSite& a = sites_[sheet.first];
-    const TracedSite& b = sites_[sheet.second];
-    // The smaller site of the two has a side in the wall.
-    const bool is_first = b.kind == SiteKind::face || (a.kind == SiteKind::vertex && b.kind == SiteKind::edge);
-    const TracedSite& owner = is_first ? a : b;
-    const DomainSide* best = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    const Vec3d wall = *normal_of(sheet);
-    for (const DomainSide& side : owner.sides) {
-      const double away = std::abs(side.height(at)) + sites_.extent() * length(cross(side.normal, wall));
-      if (away >= least) continue;
-      least = away;
-      best = &side;
-    }
-    return is_first ? -best->normal : best->normal;
+    const DomainSide* side = sites_.side_between(sheet.first, sheet.second);
+    if (side == nullptr) return sites_.gradient(sheet.first, at) - sites_.gradient(sheet.second, at);
+    // The side points towards the domain of the smaller site.
+    const bool is_first = static_cast<int>(sites_[sheet.first].kind) < static_cast<int>(sites_[sheet.second].kind);
+    return is_first ? -side->normal : side->normal;
   }
 
   void add_surface() {
@@ -356,6 +343,11 @@ class Assembly {
     angle_.push_back(static_cast<float>(angle));
   }
 
+  [[nodiscard]] std::array<Vec3d, 3> corners_of(std::uint32_t t) const {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    return {sites_.vertices()[a], sites_.vertices()[b], sites_.vertices()[c]};
+  }
+
   /// Returns the element of the mesh that is the footprint on a site.
   [[nodiscard]] SiteId element_at(Index i, const Vec3d& foot) const {
     const TracedSite& site = sites_[i];
@@ -363,7 +355,7 @@ class Assembly {
     std::uint32_t best = triangles_of_[i].front();
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t t : triangles_of_[i]) {
-      const double squared = squared_length(closest_point_on_triangle(foot, triangle_corners(mesh_, t)) - foot);
+      const double squared = squared_length(closest_point_on_triangle(foot, corners_of(t)) - foot);
       if (!(squared < least)) continue;
       least = squared;
       best = t;
@@ -419,7 +411,10 @@ class Assembly {
       }
     }
     Complex out;
-    for (const Vertex* vertex : used) out.positions.push_back(vertex->at);
+    for (const Vertex* vertex : used) {
+      // Vertices of the mesh keep their coordinates.
+      out.positions.push_back(vertex->on != none ? mesh_.vertices[vertex->on] : vertex->at + sites_.origin());
+    }
     out.triangles = std::move(triangles_);
     out.vertex_columns = Columns(out.positions.size());
     out.triangle_columns = Columns(out.triangles.size());
@@ -433,7 +428,8 @@ class Assembly {
     for (const std::size_t which : {0U, 1U}) {
       const std::span<double> column = columns.add<double>(std::string(medial_columns::footprints[which]), 3);
       for (std::size_t k = 0; k < used.size(); ++k) {
-        for (std::size_t axis = 0; axis < 3; ++axis) column[3 * k + axis] = found[k].at[which][axis];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          column[3 * k + axis] = (found[k].at[which] + sites_.origin())[axis];
       }
     }
     for (const std::size_t which : {0U, 1U}) {

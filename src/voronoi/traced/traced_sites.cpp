@@ -24,7 +24,12 @@ class SiteFinder {
   std::optional<TracedSites> find() {
     place();
     if (!add_faces() || !add_edges() || !add_vertices()) return std::nullopt;
-    for (TracedSite& site : out_.sites_) detail::sort_unique(site.vertices);
+    std::vector<Box3> boxes;
+    for (TracedSite& site : out_.sites_) {
+      detail::sort_unique(site.vertices);
+      boxes.push_back(site.box);
+    }
+    out_.boxes_.emplace(boxes);
     return std::move(out_);
   }
 
@@ -35,8 +40,14 @@ class SiteFinder {
   void place() {
     const Box3 box = bounds(mesh_);
     out_.extent_ = box.diagonal();
-    out_.tolerance_ = std::max(relative_tolerance * out_.extent_, 4 * flatness_);
-    out_.vertices_.assign(mesh_.vertices.begin(), mesh_.vertices.end());
+    out_.tolerance_ = std::max({relative_tolerance * out_.extent_, 4 * flatness_, 0x1p-47 * box.largest_coordinate()});
+    out_.origin_ = box.center();
+    for (const Vec3d& p : mesh_.vertices) out_.vertices_.push_back(p - out_.origin_);
+  }
+
+  [[nodiscard]] std::array<Vec3d, 3> corners_of(std::uint32_t t) const {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    return {out_.vertices_[a], out_.vertices_[b], out_.vertices_[c]};
   }
 
   [[nodiscard]] std::uint32_t apex(std::uint32_t t, const Segment& ends) const {
@@ -52,12 +63,12 @@ class SiteFinder {
     if (flatness_ == 0) return false;
     const auto [first, second] = sites_.triangles_of[edge];
     const auto height = [&](std::uint32_t of, std::uint32_t above) {
-      const auto [a, b, c] = triangle_corners(mesh_, above);
+      const auto [a, b, c] = corners_of(above);
       const Vec3d normal = unit_normal(a, b, c);
-      return std::abs(dot(normal, mesh_.vertices[apex(of, table_.edges()[edge])] - a));
+      return std::abs(dot(normal, out_.vertices_[apex(of, table_.edges()[edge])] - a));
     };
     const auto normal_of = [&](std::uint32_t t) {
-      const auto [a, b, c] = triangle_corners(mesh_, t);
+      const auto [a, b, c] = corners_of(t);
       return unit_normal(a, b, c);
     };
     return std::min(height(first, second), height(second, first)) <= flatness_ &&
@@ -86,11 +97,11 @@ class SiteFinder {
       const Index own = out_.face_of_[t] = out_.face_of_[root];
       TracedSite& face = out_.sites_[own];
       face.number = std::min(face.number, static_cast<std::int32_t>(sites_.face_of[t]));
-      const auto [a, b, c] = triangle_corners(mesh_, t);
+      const auto [a, b, c] = corners_of(t);
       const double area = length(cross(b - a, c - a));
       for (const std::uint32_t v : mesh_.triangles[t]) {
         face.vertices.push_back(v);
-        face.box.extend(mesh_.vertices[v]);
+        face.box.extend(out_.vertices_[v]);
       }
       if (area <= largest[own]) continue;
       largest[own] = area;
@@ -100,7 +111,7 @@ class SiteFinder {
     for (std::uint32_t t = 0; t < count; ++t) {
       const TracedSite& face = out_.sites_[out_.face_of_[t]];
       for (const std::uint32_t v : mesh_.triangles[t]) {
-        if (std::abs(dot(face.direction, mesh_.vertices[v] - face.point)) > 4 * flatness_ + 1e-13 * out_.extent_) {
+        if (std::abs(dot(face.direction, out_.vertices_[v] - face.point)) > 4 * flatness_ + 1e-13 * out_.extent_) {
           return false;
         }
       }
@@ -127,8 +138,8 @@ class SiteFinder {
       if (faces[0] == faces[1]) return false;
       const bool is_reflex = sites_.turn[e] == EdgeTurn::reflex;
       BorderEdge border{{a, b}, faces};
-      const Vec3d& p = mesh_.vertices[a];
-      const Vec3d& q = mesh_.vertices[b];
+      const Vec3d& p = out_.vertices_[a];
+      const Vec3d& q = out_.vertices_[b];
       const Vec3d along = unit(q - p);
       // The first triangle traverses the edge from a to b and has its inside on the left, as seen from outside.
       const std::array<Vec3d, 2> into{unit(cross(along, out_.sites_[faces[0]].direction)),
@@ -139,6 +150,7 @@ class SiteFinder {
         face.sides.push_back({into[k], ends, is_reflex, plane_of(face, ends[0]), plane_of(face, ends[1])});
       }
       if (is_reflex) {
+        const auto number = static_cast<std::uint32_t>(out_.edges_.size());
         border.own = static_cast<Index>(out_.sites_.size());
         TracedSite& site = out_.sites_.emplace_back();
         site.kind = SiteKind::edge;
@@ -151,6 +163,7 @@ class SiteFinder {
         site.length = length(q - p);
         site.sides = {{-into[0], {p, p}}, {-into[1], {p, p}}, {along, {p, p}}, {-along, {q, q}}};
         site.vertices = {a, b};
+        site.border = number;
         site.box.extend(p);
         site.box.extend(q);
       }
@@ -173,7 +186,7 @@ class SiteFinder {
       std::vector<Vec3d> directions;
       for (const std::uint32_t k : list) {
         const auto [a, b] = out_.edges_[k].vertices;
-        directions.push_back(unit(mesh_.vertices[a == v ? b : a] - mesh_.vertices[v]));
+        directions.push_back(unit(out_.vertices_[a == v ? b : a] - out_.vertices_[v]));
       }
       add_vertex(v, list, directions);
     }
@@ -219,7 +232,7 @@ class SiteFinder {
     site.number = static_cast<std::int32_t>(sites_.face_count + sites_.reflex_edges.size()) +
                   static_cast<std::int32_t>(place - sites_.reflex_vertices.begin());
     site.triangle_or_element = v;
-    site.point = mesh_.vertices[v];
+    site.point = out_.vertices_[v];
     site.direction = inner;
     for (const std::size_t i : bounding) site.sides.push_back({-directions[i], {site.point, site.point}});
     site.vertices = {v};
@@ -323,6 +336,43 @@ double TracedSites::least_distance(Index i, const Vec3d& x) const {
   return distance(i, x);
 }
 
+const DomainSide* TracedSites::side_between(Index first, Index second) const {
+  const TracedSite* large = &sites_[first];
+  const TracedSite* small = &sites_[second];
+  const auto rank = [](const TracedSite& site) {
+    return site.kind == SiteKind::face ? 2 : site.kind == SiteKind::edge ? 1 : 0;
+  };
+  if (rank(*large) < rank(*small)) std::swap(large, small);
+  const auto has = [](const TracedSite& site, std::uint32_t v) {
+    return std::binary_search(site.vertices.begin(), site.vertices.end(), v);
+  };
+  if (rank(*large) == 2 && rank(*small) == 1) {
+    const BorderEdge& edge = edges_[small->border];
+    for (const std::size_t k : {0U, 1U}) {
+      if (&sites_[edge.faces[k]] == large) return &small->sides[k];
+    }
+    return nullptr;
+  }
+  if (rank(*large) == 1 && rank(*small) == 0) {
+    const std::uint32_t v = small->vertices[0];
+    if (!has(*large, v)) return nullptr;
+    const auto towards =
+        std::max_element(small->sides.begin(), small->sides.end(), [&](const DomainSide& a, const DomainSide& b) {
+          return std::abs(dot(a.normal, large->direction)) < std::abs(dot(b.normal, large->direction));
+        });
+    return &*towards;
+  }
+  if (rank(*large) != 1 || rank(*small) != 1) return nullptr;
+  constexpr double parallel = 1e-7;
+  if (length(cross(large->direction, small->direction)) > parallel) return nullptr;
+  for (const std::uint32_t v : small->vertices) {
+    if (!has(*large, v)) continue;
+    const bool is_start = length(vertices_[v] - small->point) <= 0.5 * small->length;
+    return &small->sides[is_start ? 2 : 3];
+  }
+  return nullptr;
+}
+
 std::vector<const DomainSide*> TracedSites::sides_at(Index i, const Vec3d& x, double tolerance) const {
   const TracedSite& site = sites_[i];
   std::vector<const DomainSide*> out;
@@ -360,19 +410,18 @@ bool TracedSites::leads_inside(Index i, const std::vector<const DomainSide*>& si
 TracedSites::Closest TracedSites::closest(const Vec3d& x, double tolerance) const {
   Closest out;
   std::vector<std::pair<double, Index>> found;
-  for (Index i = 0; i < sites_.size(); ++i) {
-    const TracedSite& site = sites_[i];
-    const Vec3d q = max(site.box.lower, min(site.box.upper, x));
-    const double reach = out.radius + tolerance;
-    if (squared_length(q - x) > reach * reach) continue;
+  boxes_->for_each_near(x, out.radius, [&](Index i) {
     const double d = distance(i, x);
-    if (!(d >= -tolerance) || d > reach || outside(i, x) > tolerance) continue;
-    found.emplace_back(d, i);
-    out.radius = std::min(out.radius, d);
-  }
+    if (d >= -tolerance && d <= out.radius + tolerance && outside(i, x) <= tolerance) {
+      found.emplace_back(d, i);
+      out.radius = std::min(out.radius, d);
+    }
+    return out.radius + 2 * tolerance;
+  });
   for (const auto& [d, i] : found) {
     if (d <= out.radius + tolerance) out.sites.push_back(i);
   }
+  std::sort(out.sites.begin(), out.sites.end());
   return out;
 }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/box_bvh.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
@@ -36,6 +38,7 @@ struct TracedSite {
   double length = 0;                      ///< of an edge
   std::vector<DomainSide> sides;          ///< of a face: its whole boundary
   std::vector<std::uint32_t> vertices;    ///< vertices of the mesh that the site contains, ascending
+  std::uint32_t border = 0;               ///< of an edge: its number in TracedSites::edges()
   std::uint32_t triangle_or_element = 0;  ///< a triangle of the face; the edge or vertex of the SiteTable
   Box3 box;
 };
@@ -48,7 +51,7 @@ struct BorderEdge {
   [[nodiscard]] bool is_reflex() const { return own != 0xffffffff; }
 };
 
-/// The sites of a polyhedron, and the functions of their distances.
+/// The sites of a polyhedron, and the functions of their distances. Coordinates are relative to origin().
 class TracedSites {
  public:
   using Index = std::uint32_t;
@@ -68,10 +71,16 @@ class TracedSites {
   [[nodiscard]] std::size_t hole_count() const;
   /// Returns the face of a triangle of the mesh.
   [[nodiscard]] Index face_of(std::uint32_t triangle) const { return face_of_[triangle]; }
+  /// Returns the middle of the box around the solid, in the coordinates of the mesh.
+  [[nodiscard]] const Vec3d& origin() const { return origin_; }
   /// Returns the diagonal of the box around the solid.
   [[nodiscard]] double extent() const { return extent_; }
   /// Distances below this value, in mesh units, count as 0.
   [[nodiscard]] double tolerance() const { return tolerance_; }
+
+  /// Returns the distance within which the place is unknown where a curve touches a region: there, distances differ by
+  /// the square of the way.
+  [[nodiscard]] double blur(double radius) const { return 4 * std::sqrt(tolerance_ * radius); }
 
   /// Returns the distance of x from the plane, line or point of a site. It is negative behind a face.
   [[nodiscard]] double distance(Index i, const Vec3d& x) const;
@@ -89,12 +98,25 @@ class TracedSites {
   [[nodiscard]] bool leads_inside(Index i, const std::vector<const DomainSide*>& sides, const Vec3d& h,
                                   double tolerance) const;
 
+  /// Returns the side of a domain between two sites of which one belongs to the border of the other: between a face and
+  /// its edge, an edge and its end, or two edges on one line. It points towards the domain of the smaller site, or of
+  /// `second`. Null for other sites.
+  [[nodiscard]] const DomainSide* side_between(Index first, Index second) const;
+
   /// The closest sites of a point.
   struct Closest {
     double radius = std::numeric_limits<double>::infinity();
     std::vector<Index> sites;  ///< ascending: all within the tolerance of the radius
   };
   [[nodiscard]] Closest closest(const Vec3d& x, double tolerance) const;
+  /// Calls visit(site) for each site whose box is within a distance of x.
+  template <class Visit>
+  void for_each_within(const Vec3d& x, double distance, const Visit& visit) const {
+    boxes_->for_each_near(x, distance, [&](Index i) {
+      visit(i);
+      return distance;
+    });
+  }
 
  private:
   friend class SiteFinder;
@@ -104,6 +126,8 @@ class TracedSites {
   std::vector<BorderEdge> edges_;
   std::vector<Vec3d> vertices_;
   std::vector<Index> face_of_;
+  std::optional<BoxBvh> boxes_;
+  Vec3d origin_;
   double extent_ = 0;
   double tolerance_ = 0;
 };

@@ -29,13 +29,13 @@ struct Problem {
 /// Points by their place, for a search within a small distance.
 class PlaceIndex {
  public:
-  explicit PlaceIndex(double distance) : distance_(distance) {}
+  explicit PlaceIndex(const TracedSites& sites) : sites_(sites), distance_(16 * sites.tolerance()) {}
 
   /// Returns the junction at a place. Where curves touch, places are less precise, so the same sites within a larger
   /// distance are the same junction.
   [[nodiscard]] std::uint32_t find(const Vec3d& at, double radius, const std::vector<Index>& found,
                                    const std::vector<Junction>& all) const {
-    const double larger = std::max(distance_, 1e-4 * radius);
+    const double larger = std::max(distance_, sites_.blur(radius));
     const auto lowest = by_x_.lower_bound(at.x - larger);
     for (auto it = lowest; it != by_x_.end() && it->first <= at.x + larger; ++it) {
       const double apart = length(all[it->second].at - at);
@@ -46,6 +46,7 @@ class PlaceIndex {
   void add(const Vec3d& at, std::uint32_t k) { by_x_.emplace(at.x, k); }
 
  private:
+  const TracedSites& sites_;
   const double distance_;
   std::multimap<double, std::uint32_t> by_x_;
 };
@@ -53,7 +54,7 @@ class PlaceIndex {
 class Builder {
  public:
   Builder(const TracedSites& sites, const Context& context)
-      : sites_(sites), context_(context), tracer_(sites), places_(16 * sites.tolerance()) {}
+      : sites_(sites), context_(context), tracer_(sites), places_(sites) {}
 
   TracedStructure build() {
     add_vertices();
@@ -74,6 +75,7 @@ class Builder {
   struct Ray {
     SeamRay ray;
     Vec3d start;  ///< a point of the seam: the junction, or a point near it
+    Vec3d chord;  ///< direction of a point of the seam; seams with one tangent differ in it
     std::uint32_t curve = none;
   };
 
@@ -84,10 +86,12 @@ class Builder {
     const double radius = sites_.distance(found[0], at);
     for (SeamRay& ray : LocalStar(sites_, at, found).rays()) {
       if (ray.sites.size() < 4 && ray.ring.germs.size() == 3 && has_three_footprints(at, ray.sites)) {
-        out.push_back({std::move(ray), at, none});
+        const Vec3d direction = ray.direction;
+        out.push_back({std::move(ray), at, direction, none});
         continue;
       }
-      double step = 0.02 * radius;
+      // Seams that part by the square of the step must be clearly apart.
+      double step = std::clamp(8 * std::sqrt(sites_.tolerance() * radius), 0.02 * radius, 0.25 * radius);
       constexpr int most_tries = 8;
       bool is_any = false;
       for (int k = 0; k < most_tries && !is_any; ++k, step *= 0.25) {
@@ -102,7 +106,7 @@ class Builder {
           SeamRay own = LocalStar(sites_, start, closest.sites).ray(along);
           if (own.ring.germs.size() < 3) continue;
           own.direction = ray.direction;
-          out.push_back({std::move(own), start, none});
+          out.push_back({std::move(own), start, unit(start - at), none});
           is_any = true;
         }
       }
@@ -152,7 +156,7 @@ class Builder {
     const Vec3d second = sites_[edge.faces[1]].direction;
     constexpr double share = 0.4671;  // not in the middle, where symmetric solids may have junctions
     const Vec3d middle = a + (b - a) * share;
-    const double start = 1e-4 * length(b - a);
+    const double start = std::max(1e-4 * length(b - a), 64 * sites_.tolerance());
     if (edge.is_reflex()) {
       walk(edge.own, edge.faces[0], middle + first * start, first, TracedSurface::plane(along, middle));
       walk(edge.own, edge.faces[1], middle + second * start, second, TracedSurface::plane(along, middle));
@@ -164,40 +168,19 @@ class Builder {
 
   /// Follows a wall in a plane to its border, and traces the seam there.
   void walk(Index a, Index b, const Vec3d& start, const Vec3d& towards, const TracedSurface& plane) {
-    const auto surface = wall_of(a, b, start, towards);
-    if (!surface) throw Problem{"a wall has no surface", start};
-    const TracedCurve curve{{*surface, plane}, {std::min(a, b), std::max(a, b)}};
-    const Trace trace = tracer_.trace(curve, start, towards);
+    // Edges from one vertex have two planes between them; the footprints ahead select one.
+    const Vec3d ahead = start + towards * (1e-3 * sites_.distance(a, start));
+    const TracedCurve curve{{tracer_.between(a, b, ahead), plane}, {std::min(a, b), std::max(a, b)}};
+    const Trace trace = tracer_.trace(curve, start, towards, {});
     if (trace.end == TraceEnd::failed) throw Problem{"a walk along a wall failed", trace.points.back()};
     if (trace.end == TraceEnd::event) reach(trace.points.back(), trace.sites);
-  }
-
-  /// Returns the surface of the wall between two sites at a point, in a direction along it.
-  [[nodiscard]] std::optional<TracedSurface> wall_of(Index a, Index b, const Vec3d& at, const Vec3d& towards) const {
-    constexpr double same_foot = 1e-7;
-    const Vec3d ahead = at + towards * (1e-3 * sites_.distance(a, at));
-    const TracedSurface surface = tracer_.between(a, b, ahead);
-    // Edges from one vertex have two planes between them; the footprints ahead select one.
-    if (surface.is_plane() || length(sites_.gradient(a, at) - sites_.gradient(b, at)) > same_foot) return surface;
-    std::optional<TracedSurface> best;
-    double least = 1e-4;
-    for (const Index i : {a, b}) {
-      if (sites_[i].kind == SiteKind::face) continue;
-      for (const DomainSide* side : sites_.sides_at(i, at, 8 * sites_.tolerance())) {
-        const double slope = std::abs(dot(side->normal, towards));
-        if (slope >= least) continue;
-        least = slope;
-        best = TracedSurface::plane(side->normal, side->ends[0]);
-      }
-    }
-    return best;
   }
 
   /// Adds a junction, or traces the seam through a point.
   void reach(const Vec3d& at, const std::vector<Index>& found) {
     if (places_.find(at, sites_.distance(found[0], at), found, out_.junctions) != none) return;
     const std::vector<Ray> rays = rays_at(at, found);
-    if (rays.size() == 2 && dot(rays[0].ray.direction, rays[1].ray.direction) < -0.999999 &&
+    if (rays.size() == 2 && dot(rays[0].ray.direction, rays[1].ray.direction) < -0.99 &&
         rays[0].ray.sites == rays[1].ray.sites) {
       follow(at, rays);
       return;
@@ -212,8 +195,8 @@ class Builder {
     return *curve;
   }
 
-  [[nodiscard]] Trace traced(const Vec3d& at, const Ray& ray) const {
-    Trace out = tracer_.trace(curve_of(ray), ray.start, ray.ray.direction);
+  [[nodiscard]] Trace traced(const Vec3d& at, const Ray& ray, const std::vector<Index>& left) const {
+    Trace out = tracer_.trace(curve_of(ray), ray.start, ray.ray.direction, left);
     if (ray.start != at) out.points.insert(out.points.begin(), at);
     if (out.end == TraceEnd::failed || out.end == TraceEnd::border)
       throw Problem{"the trace of a seam failed", out.points.back()};
@@ -224,7 +207,7 @@ class Builder {
   void follow(const Vec3d& at, const std::vector<Ray>& rays) {
     std::array<Trace, 2> both;
     for (const std::size_t k : {0U, 1U}) {
-      both[k] = traced(at, rays[k]);
+      both[k] = traced(at, rays[k], rays[k].ray.sites);
       if (both[k].end == TraceEnd::event) {
         std::ignore = junction_at(both[k].points.back(), both[k].sites);
         return;
@@ -245,6 +228,7 @@ class Builder {
     curve.points.insert(curve.points.end(), both[1].points.begin() + 1, both[1].points.end());
     curve.curve = curve_of(rays[1]);
     curve.ring = rays[1].ray.ring;
+    set_directions(curve, direction_from(curve, curve.points[0], curve.points[1]));
     out_.curves.push_back(std::move(curve));
   }
 
@@ -258,6 +242,7 @@ class Builder {
     curve.points = trace.points;
     curve.curve = curve_of(ray);
     curve.ring = ray.ray.ring;
+    set_directions(curve, ray.chord);
     out_.curves.push_back(std::move(curve));
   }
 
@@ -285,13 +270,14 @@ class Builder {
   void trace_ray(std::uint32_t from, std::uint32_t k) {
     const Vec3d at = out_.junctions[from].at;
     const Ray ray = rays_[from][k];
-    const Trace trace = traced(at, ray);
+    const Trace trace = traced(at, ray, out_.junctions[from].sites);
     const auto number = static_cast<std::uint32_t>(out_.curves.size());
     Curve curve;
     curve.points = trace.points;
     curve.ring = ray.ray.ring;
     curve.curve = curve_of(ray);
     curve.ends = {from, trace.vertex};
+    set_directions(curve, ray.chord);
     if (trace.end == TraceEnd::event) {
       curve.ends[1] = junction_at(trace.points.back(), trace.sites);
       curve.points.back() = out_.junctions[curve.ends[1]].at;
@@ -316,11 +302,16 @@ class Builder {
     return near && length(*near - end) > 0.1 * step ? unit(*near - end) : chord;
   }
 
+  void set_directions(Curve& curve, const Vec3d& first) const {
+    const std::size_t count = curve.points.size();
+    curve.directions = {first, direction_from(curve, curve.points[count - 1], curve.points[count - 2])};
+  }
+
   /// Marks the ray of a junction along which a curve arrives.
-  void take_ray(std::uint32_t junction, const Curve& curve, std::uint32_t number) {
+  void take_ray(std::uint32_t junction, Curve& curve, std::uint32_t number) {
     const std::size_t count = curve.points.size();
     const Vec3d& end = curve.points[count - 1];
-    const Vec3d back = direction_from(curve, end, curve.points[count - 2]);
+    const Vec3d back = curve.directions[1];
     Ray* best = nullptr;
     double most = 0;
     for (Ray& ray : rays_[junction]) {
@@ -334,6 +325,7 @@ class Builder {
     }
     if (best == nullptr) throw Problem{"a seam arrives at a junction that has no such seam", end};
     best->curve = number;
+    curve.directions[1] = best->chord;
   }
 
   /// Walks from a curve across its sheets, to their other boundaries.
@@ -384,7 +376,7 @@ class Builder {
         const Vec3d& at = end == 0 ? curve.points[0] : curve.points[count - 1];
         const Vec3d& next = end == 0 ? curve.points[1] : curve.points[count - 2];
         const bool is_inside = !curve.is_edge && out_.junctions[curve.ends[end]].vertex == none;
-        const Vec3d ray = is_inside ? direction_from(curve, at, next) : unit(next - at);
+        const Vec3d ray = is_inside ? curve.directions[end] : unit(next - at);
         const RegionRing& ring = curve.ring;
         for (std::uint32_t g = 0; g < ring.germs.size(); ++g) {
           const RegionRing::Germ& germ = ring.germs[g];

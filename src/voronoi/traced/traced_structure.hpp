@@ -30,6 +30,7 @@ struct TracedStructure {
   struct Curve {
     std::array<std::uint32_t, 2> ends{none, none};  ///< junctions
     std::vector<Vec3d> points;                      ///< from one end to the other
+    std::array<Vec3d, 2> directions;                ///< of the curve at its ends, away from them: unit vectors
     TracedCurve curve;                              ///< of a seam
     RegionRing ring;                                ///< counterclockwise as seen from the second end
     bool is_edge = false;                           ///< of the polyhedron
