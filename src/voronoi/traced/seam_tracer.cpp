@@ -55,6 +55,12 @@ TracedSurface SeamTracer::between(Index first, Index second, const Vec3d& at) co
       const Vec3d normal = a.direction + b.direction * ((along_a < 0) == (along_b < 0) ? -1.0 : 1.0);
       if (length(normal) > 1e-6) return TracedSurface::plane(unit(normal), apex);
     }
+    constexpr double parallel = 1e-12;
+    const Vec3d step = b.point - a.point;
+    const Vec3d apart = step - a.direction * dot(a.direction, step);
+    if (length(cross(a.direction, b.direction)) < parallel && length(apart) > sites_.tolerance()) {
+      return TracedSurface::plane(unit(apart), a.point + apart * 0.5);
+    }
   }
   return TracedSurface::between(first, second);
 }
@@ -320,11 +326,49 @@ std::optional<Vec3d> SeamTracer::touching_point(const TracedCurve& curve, Index 
     value = other;
     best = *next;
     if (!(std::abs(way + step) < 0.1 * radius)) return std::nullopt;
-    if (std::abs(step) < 1e-9 * radius) break;
+    if (std::abs(step) < 1e-13 * radius) break;
   }
   const double gap = sites_.distance(site, best) - sites_.distance(curve.sites[0], best);
   if (std::abs(gap) > sites_.tolerance() || sites_.outside(site, best) > sites_.tolerance()) return std::nullopt;
   return best;
+}
+
+std::optional<Vec3d> SeamTracer::meeting_point(const Vec3d& x, double radius) const {
+  constexpr double loose = 64;
+  const double reach = loose * sites_.tolerance();
+  const TracedSites::Closest near = sites_.closest(x, reach);
+  if (near.sites.size() < 2) return std::nullopt;
+  std::vector<TracedSurface> surfaces;
+  for (std::size_t k = 0; k < near.sites.size(); ++k) {
+    if (k > 0) surfaces.push_back(TracedSurface::between(near.sites[0], near.sites[k]));
+    for (const DomainSide* side : sites_.sides_at(near.sites[k], x, reach)) {
+      if (side->is_open) surfaces.push_back(TracedSurface::plane(side->normal, side->ends[0]));
+    }
+  }
+  // Least squares by Gauss and Newton. A little damping keeps directions that nothing determines.
+  Vec3d best = x;
+  constexpr int most_iterations = 12;
+  for (int k = 0; k < most_iterations; ++k) {
+    constexpr double damping = 1e-9;
+    std::array<Vec3d, 3> matrix{Vec3d{damping, 0, 0}, Vec3d{0, damping, 0}, Vec3d{0, 0, damping}};
+    Vec3d right;
+    for (const TracedSurface& surface : surfaces) {
+      const Vec3d row = slope(surface, best);
+      const double f = value(surface, best);
+      for (std::size_t axis = 0; axis < 3; ++axis) matrix[axis] += row * row[axis];
+      right += row * f;
+    }
+    const double det = dot(matrix[0], cross(matrix[1], matrix[2]));
+    if (!(std::abs(det) > 0)) return std::nullopt;
+    const Vec3d step = (cross(matrix[1], matrix[2]) * right.x + cross(matrix[2], matrix[0]) * right.y +
+                        cross(matrix[0], matrix[1]) * right.z) /
+                       det;
+    best -= step;
+    if (length(step) < 1e-15 * sites_.extent()) break;
+  }
+  if (!(length(best - x) <= std::max(reach, sites_.blur(radius)))) return std::nullopt;
+  const TracedSites::Closest found = sites_.closest(best, sites_.tolerance());
+  return found.sites == near.sites ? std::optional(best) : std::nullopt;
 }
 
 void SeamTracer::end_at_border(Trace& trace) const {
@@ -380,8 +424,9 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
       });
       if (!is_first && !is_clear(curve, x, *found)) continue;
       const auto touched = touching_point(curve, near[r].site, *found, radius);
-      out.points.push_back(touched ? *touched : *found);
-      out.sites = touched ? sites_.closest(*touched, tolerance).sites : there.sites;
+      const auto met = meeting_point(touched ? *touched : *found, radius);
+      out.points.push_back(met ? *met : touched ? *touched : *found);
+      out.sites = met || touched ? sites_.closest(out.points.back(), tolerance).sites : there.sites;
       out.end = TraceEnd::event;
       if (there.radius < touching * tolerance) end_at_border(out);
       return out;

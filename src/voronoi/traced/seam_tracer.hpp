@@ -76,7 +76,8 @@ class SeamTracer {
   [[nodiscard]] std::vector<Vec3d> seam_points(const std::vector<TracedSites::Index>& sites, const Vec3d& at,
                                                const Vec3d& normal, double reach) const;
 
-  /// Returns the points equally far from two sites, near one of them. For edges from one vertex, this is a plane.
+  /// Returns the points equally far from two sites, near one of them. For edges from one vertex, and for parallel
+  /// edges, this is a plane.
   [[nodiscard]] TracedSurface between(TracedSites::Index first, TracedSites::Index second, const Vec3d& at) const;
 
  private:
@@ -89,6 +90,9 @@ class SeamTracer {
   /// Returns the point near x where a curve touches the region of a site, if it does so within the tolerance.
   [[nodiscard]] std::optional<Vec3d> touching_point(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                                     double radius) const;
+  /// Returns the point near x where all sites meet that are nearly as close, if they meet within the tolerance. It is
+  /// more precise than x if curves touch there.
+  [[nodiscard]] std::optional<Vec3d> meeting_point(const Vec3d& x, double radius) const;
   /// Sets the end of a trace that reached the surface: at a vertex if one is close.
   void end_at_border(Trace& trace) const;
   /// Returns true if no other site is as close at points of the curve between two of its points.

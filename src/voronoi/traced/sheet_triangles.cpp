@@ -69,6 +69,15 @@ class Refinement {
     return a;
   }
 
+  /// Returns true if b follows a in a triangle.
+  [[nodiscard]] bool runs_along(std::uint32_t t, std::uint32_t a, std::uint32_t b) const {
+    const Triangle& corners = out_.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (corners[k] == a) return corners[(k + 1) % 3] == b;
+    }
+    return false;
+  }
+
   /// Flips inner edges until they satisfy the Delaunay condition in the plane.
   void flip_all() {
     constexpr int most_passes = 30;
@@ -81,7 +90,7 @@ class Refinement {
         auto [a, b] = ends;
         const std::uint32_t c = apex(at[0], a, b), d = apex(at[1], a, b);
         const auto& p = out_.plane;
-        if (cross_of(p[a], p[b], p[c]) < 0) std::swap(a, b);
+        if (!runs_along(at[0], a, b)) std::swap(a, b);
         if (c == d || all.contains(key(c, d))) continue;
         // The flipped triangles c-d must both be counterclockwise.
         const double least = 1e-12 * (std::abs(cross_of(p[a], p[b], p[c])) + std::abs(cross_of(p[a], p[b], p[d])));
@@ -160,6 +169,18 @@ class Refinement {
   const Context& context_;
 };
 
+/// Returns true if no triangle of a sheet is turned over.
+bool is_one_to_one(const SheetTriangles& sheet) {
+  double largest = 0;
+  double least = 0;
+  for (const auto& [a, b, c] : sheet.triangles) {
+    const double area = cross_of(sheet.plane[a], sheet.plane[b], sheet.plane[c]);
+    largest = std::max(largest, area);
+    least = std::min(least, area);
+  }
+  return least >= -1e-9 * largest;
+}
+
 }  // namespace
 
 std::optional<SheetTriangles> sheet_triangles(const WallMap& map, const std::vector<std::vector<Vec3d>>& loops,
@@ -182,7 +203,7 @@ std::optional<SheetTriangles> sheet_triangles(const WallMap& map, const std::vec
   if (!triangles) return std::nullopt;
   for (const Triangle& t : *triangles) out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
   Refinement(map, out, chord, context).run();
-  return out;
+  return is_one_to_one(out) ? std::optional(std::move(out)) : std::nullopt;
 }
 
 }  // namespace blum::voronoi

@@ -52,7 +52,9 @@ class Assembly {
       vertices_.push_back({junction.at, junction.sites, junction.vertex, false});
     }
     for (const TracedStructure::Curve& curve : structure_.curves) add_curve(curve);
-    for (const Sheet& sheet : joined_sheets()) {
+    const std::vector<Sheet> sheets = joined_sheets();
+    refine_curves(sheets);
+    for (const Sheet& sheet : sheets) {
       if (part_ == VoronoiPart::medial_axis && is_domain_wall(sheet)) continue;
       if (!add_sheet(sheet)) return std::nullopt;
       throw_if_cancelled(context_);
@@ -127,6 +129,69 @@ class Assembly {
     is_kept[furthest] = true;
     keep(points, first, furthest, is_kept);
     keep(points, furthest, last, is_kept);
+  }
+
+  /// Divides seams until their pieces are close to the sheets' maps of straight pieces in the plane. Otherwise,
+  /// triangles at the boundary would overlap.
+  void refine_curves(const std::vector<Sheet>& sheets) {
+    constexpr int most_passes = 12;
+    std::vector<bool> is_new(structure_.curves.size(), true);
+    for (int pass = 0; pass < most_passes; ++pass) {
+      std::vector<std::vector<bool>> is_split(structure_.curves.size());
+      for (std::size_t c = 0; c < is_split.size(); ++c) is_split[c].resize(points_of_curve_[c].size() - 1);
+      for (const Sheet& sheet : sheets) mark_pieces(sheet, is_new, is_split);
+      bool is_any = false;
+      for (std::size_t c = 0; c < is_split.size(); ++c) {
+        is_new[c] = split(structure_.curves[c], is_split[c], points_of_curve_[c]);
+        is_any = is_any || is_new[c];
+      }
+      if (!is_any) return;
+    }
+  }
+
+  /// Marks the pieces of a sheet's boundary whose middle in the plane is too far from their own middle.
+  void mark_pieces(const Sheet& sheet, const std::vector<bool>& is_new,
+                   std::vector<std::vector<bool>>& is_split) const {
+    const std::optional<Vec3d> normal = normal_of(sheet);
+    if (normal) return;
+    const WallMap map(sites_, sheet.first, sheet.second, normal, points_of(sheet.loops[0]));
+    for (const std::vector<TracedStructure::Side>& loop : sheet.loops) {
+      for (const TracedStructure::Side& side : loop) {
+        if (!is_new[side.curve] || structure_.curves[side.curve].is_edge) continue;
+        const std::vector<std::uint32_t>& list = points_of_curve_[side.curve];
+        for (std::size_t k = 1; k < list.size(); ++k) {
+          const Vec3d& a = vertices_[list[k - 1]].at;
+          const Vec3d& b = vertices_[list[k]].at;
+          const WallMap::Point p = map.to_plane(a), q = map.to_plane(b);
+          const Vec3d middle = map.from_plane({0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])});
+          const double away = length(middle - 0.5 * (a + b));
+          if (away > chord_ && away > 0.02 * length(b - a)) is_split[side.curve][k - 1] = true;
+        }
+      }
+    }
+  }
+
+  /// Divides marked pieces of a curve. Returns true if there are any.
+  bool split(const TracedStructure::Curve& curve, const std::vector<bool>& is_split, std::vector<std::uint32_t>& list) {
+    if (std::none_of(is_split.begin(), is_split.end(), [](bool marked) { return marked; })) return false;
+    std::vector<std::uint32_t> out{list[0]};
+    bool is_any = false;
+    for (std::size_t k = 1; k < list.size(); ++k) {
+      const Vec3d a = vertices_[list[k - 1]].at;
+      const Vec3d way = vertices_[list[k]].at - a;
+      const double size = length(way);
+      if (is_split[k - 1] && size > 16 * sites_.tolerance()) {
+        const auto found = tracer_.point_in_plane(curve.curve, a + way * 0.5, way / size);
+        if (found && length(*found - a) < size) {
+          out.push_back(static_cast<std::uint32_t>(vertices_.size()));
+          vertices_.push_back({*found, curve.curve.sites, none, false});
+          is_any = true;
+        }
+      }
+      out.push_back(list[k]);
+    }
+    list = std::move(out);
+    return is_any;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> vertices_of(const std::vector<TracedStructure::Side>& loop) const {

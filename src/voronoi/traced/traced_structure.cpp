@@ -228,7 +228,7 @@ class Builder {
     curve.points.insert(curve.points.end(), both[1].points.begin() + 1, both[1].points.end());
     curve.curve = curve_of(rays[1]);
     curve.ring = rays[1].ray.ring;
-    set_directions(curve, direction_from(curve, curve.points[0], curve.points[1]));
+    set_directions(curve, direction_from(curve, curve.points[0], next_to(curve, 0)));
     out_.curves.push_back(std::move(curve));
   }
 
@@ -303,8 +303,17 @@ class Builder {
   }
 
   void set_directions(Curve& curve, const Vec3d& first) const {
+    curve.directions = {first, direction_from(curve, curve.points.back(), next_to(curve, 1))};
+  }
+
+  /// Returns the first point of a curve that is clearly apart from one of its ends.
+  [[nodiscard]] const Vec3d& next_to(const Curve& curve, std::uint32_t end) const {
+    constexpr double apart = 256;
     const std::size_t count = curve.points.size();
-    curve.directions = {first, direction_from(curve, curve.points[count - 1], curve.points[count - 2])};
+    const auto at = [&](std::size_t k) -> const Vec3d& { return curve.points[end == 0 ? k : count - 1 - k]; };
+    std::size_t k = 1;
+    while (k + 1 < count && length(at(k) - at(0)) < apart * sites_.tolerance()) ++k;
+    return at(k);
   }
 
   /// Marks the ray of a junction along which a curve arrives.
@@ -374,7 +383,7 @@ class Builder {
       const std::size_t count = curve.points.size();
       for (const std::uint32_t end : {0U, 1U}) {
         const Vec3d& at = end == 0 ? curve.points[0] : curve.points[count - 1];
-        const Vec3d& next = end == 0 ? curve.points[1] : curve.points[count - 2];
+        const Vec3d& next = next_to(curve, end);
         const bool is_inside = !curve.is_edge && out_.junctions[curve.ends[end]].vertex == none;
         const Vec3d ray = is_inside ? curve.directions[end] : unit(next - at);
         const RegionRing& ring = curve.ring;
