@@ -152,6 +152,13 @@ class Assembly {
   /// Marks the pieces of a sheet's boundary whose middle in the plane is too far from their own middle.
   void mark_pieces(const Sheet& sheet, const std::vector<bool>& is_new,
                    std::vector<std::vector<bool>>& is_split) const {
+    for (const std::vector<TracedStructure::Side>& loop : sheet.loops) {
+      if (vertices_of(loop).size() > 2) continue;
+      // A lens between two seams needs corners inside them.
+      for (const TracedStructure::Side& side : loop) {
+        if (!structure_.curves[side.curve].is_edge) is_split[side.curve].assign(is_split[side.curve].size(), true);
+      }
+    }
     const std::optional<Vec3d> normal = normal_of(sheet);
     if (normal) return;
     const WallMap map(sites_, sheet.first, sheet.second, normal, points_of(sheet.loops[0]));
