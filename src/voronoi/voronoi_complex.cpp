@@ -226,44 +226,61 @@ double chord_of(const VoronoiOptions& options, const Box3& box) {
   return options.tolerance ? std::min(chord, 0.5 * *options.tolerance) : chord;
 }
 
+/// Traces the diagram with one effort.
+/// @return the reason why this is impossible; empty if it succeeded.
+std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
+                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+  const MeshView mesh = solid.surface().mesh;
+  const TracedResult traced = traced_structure(sites, effort, context);
+  timer.lap("traces");
+  if (!traced.structure) {
+    const Vec3d place = traced.place + sites.origin();
+    return traced.problem + " near " + exact_text(place.x) + ", " + exact_text(place.y) + ", " + exact_text(place.z);
+  }
+  const double chord = chord_of(options, bounds(mesh));
+  const auto complex_of = [&](VoronoiPart part) {
+    return traced_complex(mesh, table, sites, *traced.structure, part, chord, context);
+  };
+  std::optional<Complex> all = complex_of(VoronoiPart::all);
+  timer.lap("complex");
+  if (!all) return "a sheet cannot be divided into triangles";
+  VoronoiReport& report = out.report;
+  report.expected = traced_betti(sites, VoronoiPart::all, *solid.betti());
+  report.found = homology(all->view(), context);
+  timer.lap("homology");
+  if (report.found != report.expected) return "the traced diagram does not have the expected Betti numbers";
+  if (options.part == VoronoiPart::all) {
+    out.complex = std::move(*all);
+  } else {
+    out.complex = *complex_of(options.part);
+    timer.lap("complex");
+    report.expected = traced_betti(sites, options.part, *solid.betti());
+    report.found = homology(out.complex.view(), context);
+    timer.lap("homology");
+  }
+  report.traced = true;
+  report.joined = sites.tolerance();
+  report.faces = sites.face_count();
+  report.hausdorff_bound = 2 * chord;
+  report.certified = report.found == report.expected;
+  return {};
+}
+
 /// Traces the diagram.
 /// @param flatness  triangles whose corners lie within this distance of one plane are one face, mesh units.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, double flatness,
                   const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
-  const MeshView mesh = solid.surface().mesh;
-  const std::optional<TracedSites> sites = TracedSites::of(mesh, table, exact, flatness);
+  const std::optional<TracedSites> sites = TracedSites::of(solid.surface().mesh, table, exact, flatness);
+  timer.lap("sites");
   if (!sites) return "joined triangles are not flat";
-  const TracedResult traced = traced_structure(*sites, context);
-  timer.lap("traces");
-  if (!traced.structure) {
-    const Vec3d place = traced.place + sites->origin();
-    return traced.problem + " near " + exact_text(place.x) + ", " + exact_text(place.y) + ", " + exact_text(place.z);
-  }
-  const double chord = chord_of(options, bounds(mesh));
-  const auto complex_of = [&](VoronoiPart part) {
-    return traced_complex(mesh, table, *sites, *traced.structure, part, chord, context);
-  };
-  std::optional<Complex> all = complex_of(VoronoiPart::all);
-  if (!all) return "a sheet cannot be divided into triangles";
-  if (homology(all->view(), context) != traced_betti(*sites, VoronoiPart::all, *solid.betti())) {
-    return "the traced diagram does not have the expected Betti numbers";
-  }
-  out.complex = options.part == VoronoiPart::all ? std::move(*all) : *complex_of(options.part);
-  timer.lap("complex");
-  VoronoiReport& report = out.report;
-  report.traced = true;
-  report.flatness = flatness;
-  report.joined = sites->tolerance();
-  report.faces = sites->face_count();
-  report.reflex_edges = exact.reflex_edges.size();
-  report.reflex_vertices = exact.reflex_vertices.size();
-  report.hausdorff_bound = 2 * chord;
-  report.expected = traced_betti(*sites, options.part, *solid.betti());
-  report.found = homology(out.complex.view(), context);
-  report.certified = report.found == report.expected;
-  timer.lap("homology");
-  return {};
+  out.report.flatness = flatness;
+  out.report.reflex_edges = sites->count(SiteKind::edge);
+  out.report.reflex_vertices = sites->count(SiteKind::vertex);
+  std::string problem = trace(solid, table, *sites, TraceEffort::usual, options, timer, out, context);
+  // More walks across sheets may find what is missing.
+  if (!out.report.traced) problem = trace(solid, table, *sites, TraceEffort::full, options, timer, out, context);
+  return problem;
 }
 
 /// @param phases  phases that were already completed.

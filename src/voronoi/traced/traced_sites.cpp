@@ -253,9 +253,9 @@ std::optional<TracedSites> TracedSites::of(const MeshView& mesh, const SiteTable
   return SiteFinder(mesh, table, sites, flatness).find();
 }
 
-std::size_t TracedSites::face_count() const {
-  return static_cast<std::size_t>(
-      std::count_if(sites_.begin(), sites_.end(), [](const TracedSite& site) { return site.kind == SiteKind::face; }));
+std::size_t TracedSites::count(SiteKind kind) const {
+  const auto is_of_kind = [kind](const TracedSite& site) { return site.kind == kind; };
+  return static_cast<std::size_t>(std::count_if(sites_.begin(), sites_.end(), is_of_kind));
 }
 
 std::size_t TracedSites::hole_count() const {

@@ -66,7 +66,8 @@ class TracedSites {
   [[nodiscard]] std::size_t size() const { return sites_.size(); }
   [[nodiscard]] const std::vector<BorderEdge>& edges() const { return edges_; }
   [[nodiscard]] const std::vector<Vec3d>& vertices() const { return vertices_; }
-  [[nodiscard]] std::size_t face_count() const;
+  [[nodiscard]] std::size_t count(SiteKind kind) const;
+  [[nodiscard]] std::size_t face_count() const { return count(SiteKind::face); }
   /// Returns the number of holes in all faces together.
   [[nodiscard]] std::size_t hole_count() const;
   /// Returns the face of a triangle of the mesh.

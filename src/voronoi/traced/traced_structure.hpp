@@ -57,8 +57,14 @@ struct TracedResult {
   Vec3d place;          ///< of the problem
 };
 
+/// How thoroughly sheets are searched for further boundaries.
+enum class TraceEffort : std::uint8_t {
+  usual,  ///< From the longest seams of each boundary.
+  full,   ///< From all seams.
+};
+
 /// Traces the diagram of sites. Traces start from edges of the polyhedron, and from sheets that were found.
 /// @throws Cancelled.
-[[nodiscard]] TracedResult traced_structure(const TracedSites& sites, const Context& context);
+[[nodiscard]] TracedResult traced_structure(const TracedSites& sites, TraceEffort effort, const Context& context);
 
 }  // namespace blum::voronoi
