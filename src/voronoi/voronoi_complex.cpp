@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <new>
 #include <numbers>
 #include <optional>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "blum/complex/homology.hpp"
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
@@ -27,6 +29,7 @@
 #include "voronoi/assemble.hpp"
 #include "voronoi/planes/plane_complex.hpp"
 #include "voronoi/subdivision.hpp"
+#include "voronoi/traced/label_error.hpp"
 #include "voronoi/traced/traced_complex.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 #include "voronoi/traced/traced_structure.hpp"
@@ -226,6 +229,23 @@ double chord_of(const VoronoiOptions& options, const Box3& box) {
   return options.tolerance ? std::min(chord, 0.5 * *options.tolerance) : chord;
 }
 
+/// Returns the triangles of walls whose sites have two footprints.
+std::vector<WallTriangle> wall_triangles(const TracedSites& sites, const Complex& complex) {
+  std::map<std::int32_t, TracedSites::Index> index;
+  for (TracedSites::Index i = 0; i < sites.size(); ++i) index[sites[i].number] = i;
+  const auto first = complex.triangle_columns.get<std::int32_t>("site_a");
+  const auto second = complex.triangle_columns.get<std::int32_t>("site_b");
+  const auto angles = complex.triangle_columns.get<float>(medial_columns::separation_angle);
+  std::vector<WallTriangle> out;
+  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+    if (first[t] < 0 || !(angles[t] > 0)) continue;
+    WallTriangle& wall = out.emplace_back();
+    wall.sites = {index[first[t]], index[second[t]]};
+    for (std::size_t k = 0; k < 3; ++k) wall.corners[k] = complex.positions[complex.triangles[t][k]] - sites.origin();
+  }
+  return out;
+}
+
 /// Traces the diagram with one effort.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
@@ -259,6 +279,8 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
     timer.lap("homology");
   }
   report.traced = true;
+  report.label_error = label_error(sites, mesh, table, wall_triangles(sites, out.complex), chord, context);
+  timer.lap("errors");
   report.joined = sites.tolerance();
   report.faces = sites.face_count();
   report.hausdorff_bound = 2 * chord;

@@ -161,6 +161,9 @@ struct VoronoiReport {
   /// as checks show: all sheets are closed up, and the complex has the expected Betti numbers. See
   /// VoronoiMethod::traced.
   bool traced = false;
+  /// If traced: each point of a wall with two footprints is at most this much farther from the wall's own sites than
+  /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
+  double label_error = 0;
   std::string trace_problem;  ///< Reason why the seams were not traced, and the place; empty if they were not to be.
   BettiNumbers expected{};    ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};       ///< Betti numbers of the complex.
@@ -209,6 +212,8 @@ struct Description<VoronoiReport> {
              "pairs of faces: the first one was joined to the second one, since rounding bends them"},
       Member{"traced", &VoronoiReport::traced, "",
              "true if the seams were traced: sheets, seams and junctions are those of the diagram within rounding"},
+      Member{"label_error", &VoronoiReport::label_error, "mesh units",
+             "if traced: points of walls are at most this much farther from the walls' sites than from the border"},
       Member{"trace_problem", &VoronoiReport::trace_problem, "", "reason why tracing failed; empty if it did not"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},
