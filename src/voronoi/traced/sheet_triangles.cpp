@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <utility>
 
@@ -34,7 +35,6 @@ class Refinement {
 
   void run() {
     flip_all();
-    if (map_.is_planar()) return;
     constexpr int most_passes = 40;
     for (int k = 0; k < most_passes && split_all(); ++k) {
       flip_all();
@@ -109,6 +109,18 @@ class Refinement {
     return {0.5 * (out_.plane[a][0] + out_.plane[b][0]), 0.5 * (out_.plane[a][1] + out_.plane[b][1])};
   }
 
+  /// Returns how far the sheet is from the mean of some corners, in place or in distance from its sites.
+  [[nodiscard]] double error_at(const Point& p, std::initializer_list<std::uint32_t> corners) const {
+    const Vec3d x = map_.from_plane(p);
+    Vec3d mean;
+    double radius = 0;
+    for (const std::uint32_t v : corners) {
+      mean += out_.points[v] / static_cast<double>(corners.size());
+      radius += map_.radius(out_.points[v]) / static_cast<double>(corners.size());
+    }
+    return std::max(length(x - mean), std::abs(map_.radius(x) - radius));
+  }
+
   std::uint32_t add(const Point& p) {
     out_.plane.push_back(p);
     out_.points.push_back(map_.from_plane(p));
@@ -126,7 +138,7 @@ class Refinement {
     for (const auto& [ends, at] : sides()) {
       if (at[1] == none) continue;
       const auto& [a, b] = ends;
-      const double error = length(map_.from_plane(middle(a, b)) - 0.5 * (out_.points[a] + out_.points[b]));
+      const double error = error_at(middle(a, b), {a, b});
       if (error > chord_) edges.push_back({error, a, b, at});
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& p, const Edge& q) {
@@ -151,8 +163,7 @@ class Refinement {
       const auto [a, b, c] = out_.triangles[t];
       const auto& p = out_.plane;
       const Point centre{(p[a][0] + p[b][0] + p[c][0]) / 3, (p[a][1] + p[b][1] + p[c][1]) / 3};
-      const Vec3d flat = (out_.points[a] + out_.points[b] + out_.points[c]) / 3.0;
-      if (length(map_.from_plane(centre) - flat) <= chord_) continue;
+      if (error_at(centre, {a, b, c}) <= chord_) continue;
       if (!(cross_of(p[a], p[b], p[c]) > 0)) continue;
       const std::uint32_t m = add(centre);
       out_.triangles[t] = {a, b, m};

@@ -21,10 +21,11 @@ struct SheetTriangles {
   std::vector<Triangle> triangles;    ///< counterclockwise in the plane
 };
 
-/// Triangulates a sheet. Triangles of curved sheets are split until the middles of their edges, and their own middles,
-/// are close to the sheet. Edges of the boundary are not split.
+/// Triangulates a sheet. Triangles are split until the middles of their edges, and their own middles, are close to the
+/// sheet, and the distances from its sites are close to the means of the corners' distances. Edges of the boundary are
+/// not split.
 /// @param loops  points of the boundary; the outer loop first.
-/// @param chord  largest distance of middles from the sheet, > 0, mesh units.
+/// @param chord  largest difference of these places and distances, > 0, mesh units.
 /// @return nothing if the loops cross in the plane.
 /// @throws Cancelled.
 [[nodiscard]] std::optional<SheetTriangles> sheet_triangles(const WallMap& map,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "blum/complex/medial_columns.hpp"
+#include "blum/core/union_find.hpp"
 #include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/plane_polygon.hpp"
 #include "voronoi/label_geometry.hpp"
@@ -60,6 +61,7 @@ class Assembly {
       throw_if_cancelled(context_);
     }
     if (part_ == VoronoiPart::all) add_surface();
+    if (part_ == VoronoiPart::medial_axis) part_at_surface();
     return finish();
   }
 
@@ -77,11 +79,14 @@ class Assembly {
     if (!curve.is_edge) {
       vertices_[curve.ends[0]].is_junction = vertices_[curve.ends[1]].is_junction = true;
       std::vector<Vec3d> dense{curve.points[0]};
-      for (std::size_t k = 1; k < curve.points.size(); ++k)
+      for (std::size_t k = 1; k < curve.points.size(); ++k) {
         divide(curve, curve.points[k - 1], curve.points[k], 0, dense);
+      }
       std::vector<bool> is_kept(dense.size(), false);
       is_kept.front() = is_kept.back() = true;
-      keep(dense, 0, dense.size() - 1, is_kept);
+      std::vector<double> radii;
+      for (const Vec3d& x : dense) radii.push_back(sites_.distance(curve.curve.sites[0], x));
+      keep(dense, radii, 0, dense.size() - 1, is_kept);
       for (std::size_t k = 1; k + 1 < dense.size(); ++k) {
         if (!is_kept[k]) continue;
         list.push_back(static_cast<std::uint32_t>(vertices_.size()));
@@ -100,7 +105,10 @@ class Assembly {
     if (depth < most_depth && size > chord_) {
       const Vec3d middle = a + way * 0.5;
       const auto found = tracer_.point_in_plane(curve.curve, middle, way / size);
-      if (found && length(*found - middle) < size && length(*found - middle) > 0.5 * chord_) {
+      const auto radius = [&](const Vec3d& x) { return sites_.distance(curve.curve.sites[0], x); };
+      const double away = found ? length(*found - middle) : 0;
+      if (found && away < size &&
+          (away > 0.5 * chord_ || std::abs(radius(*found) - 0.5 * (radius(a) + radius(b))) > 0.5 * chord_)) {
         divide(curve, a, *found, depth + 1, out);
         divide(curve, *found, b, depth + 1, out);
         return;
@@ -109,8 +117,10 @@ class Assembly {
     out.push_back(b);
   }
 
-  /// Marks the points that a polyline needs to stay within half the chord (Douglas and Peucker 1973).
-  void keep(const std::vector<Vec3d>& points, std::size_t first, std::size_t last, std::vector<bool>& is_kept) const {
+  /// Marks the points that a polyline needs to stay within half the chord, in place and radius (Douglas and Peucker
+  /// 1973).
+  void keep(const std::vector<Vec3d>& points, const std::vector<double>& radii, std::size_t first, std::size_t last,
+            std::vector<bool>& is_kept) const {
     if (last - first < 2) return;
     const Vec3d way = points[last] - points[first];
     const double squared = squared_length(way);
@@ -119,7 +129,8 @@ class Assembly {
     for (std::size_t k = first + 1; k < last; ++k) {
       const Vec3d step = points[k] - points[first];
       const double share = squared > 0 ? std::clamp(dot(step, way) / squared, 0.0, 1.0) : 0;
-      const double away = length(step - way * share);
+      const double radius = radii[first] + share * (radii[last] - radii[first]);
+      const double away = std::max(length(step - way * share), std::abs(radii[k] - radius));
       if (away > most) {
         most = away;
         furthest = k;
@@ -127,8 +138,8 @@ class Assembly {
     }
     if (most <= 0.5 * chord_) return;
     is_kept[furthest] = true;
-    keep(points, first, furthest, is_kept);
-    keep(points, furthest, last, is_kept);
+    keep(points, radii, first, furthest, is_kept);
+    keep(points, radii, furthest, last, is_kept);
   }
 
   /// Divides seams until their pieces are close to the sheets' maps of straight pieces in the plane. Otherwise,
@@ -401,6 +412,36 @@ class Assembly {
       const Triangle& corners = mesh_.triangles[t];
       // Seen from the region, corners run clockwise in the mesh.
       add_triangle({corners[0], corners[2], corners[1]}, -1, sites_[sites_.face_of(t)].number, 0);
+    }
+  }
+
+  /// Gives sheets that share only a vertex of the polyhedron vertices of their own. Points of the medial axis lie inside
+  /// the solid, so its sheets are not connected there.
+  void part_at_surface() {
+    std::map<std::uint32_t, std::vector<std::pair<std::size_t, std::size_t>>> corners_at;  // (triangle, corner)
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (vertices_[triangles_[t][k]].on != none) corners_at[triangles_[t][k]].emplace_back(t, k);
+      }
+    }
+    for (const auto& [v, corners] : corners_at) {
+      detail::UnionFind joined(static_cast<std::uint32_t>(corners.size()));
+      std::map<std::uint32_t, std::uint32_t> first;  // corner at each neighbour
+      for (std::uint32_t c = 0; c < corners.size(); ++c) {
+        const auto& [t, k] = corners[c];
+        for (const std::size_t next : {1U, 2U}) {
+          const auto [place, is_new] = first.try_emplace(triangles_[t][(k + next) % 3], c);
+          if (!is_new) joined.join(place->second, c);
+        }
+      }
+      std::map<std::uint32_t, std::uint32_t> copy{{joined.find(0), v}};
+      std::vector<std::uint32_t> own(corners.size());
+      for (std::uint32_t c = 0; c < corners.size(); ++c) {
+        const auto [place, is_new] = copy.try_emplace(joined.find(c), static_cast<std::uint32_t>(vertices_.size()));
+        if (is_new) vertices_.push_back(Vertex(vertices_[v]));
+        own[c] = place->second;
+      }
+      for (std::size_t c = 0; c < corners.size(); ++c) triangles_[corners[c].first][corners[c].second] = own[c];
     }
   }
 

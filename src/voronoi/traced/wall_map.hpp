@@ -24,9 +24,10 @@ class WallMap {
   WallMap(const TracedSites& sites, TracedSites::Index first, TracedSites::Index second, std::optional<Vec3d> normal,
           std::span<const Vec3d> sample);
 
-  [[nodiscard]] bool is_planar() const { return is_planar_; }
   [[nodiscard]] Point to_plane(const Vec3d& x) const;
   [[nodiscard]] Vec3d from_plane(const Point& p) const;
+  /// Returns the distance of a point of the wall from its sites.
+  [[nodiscard]] double radius(const Vec3d& x) const { return sites_.distance(from_, x); }
 
  private:
   const TracedSites& sites_;
