@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <new>
 #include <numbers>
@@ -259,7 +260,11 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   }
   const double chord = chord_of(options, bounds(mesh));
   const auto complex_of = [&](VoronoiPart part) {
-    return traced_complex(mesh, table, sites, *traced.structure, part, chord, context);
+    // The balls of a medial axis represent the solid, so their centres must be as dense as with cubes.
+    const Vec3d size = bounds(mesh).size();
+    const double cube = std::max({size.x, size.y, size.z}) / options.resolution;
+    const double longest = part == VoronoiPart::medial_axis ? cube : std::numeric_limits<double>::infinity();
+    return traced_complex(mesh, table, sites, *traced.structure, part, chord, longest, context);
   };
   std::optional<Complex> all = complex_of(VoronoiPart::all);
   timer.lap("complex");

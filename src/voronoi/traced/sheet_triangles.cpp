@@ -30,8 +30,8 @@ bool is_in_circle(const Point& a, const Point& b, const Point& c, const Point& d
 
 class Refinement {
  public:
-  Refinement(const WallMap& map, SheetTriangles& out, double chord, const Context& context)
-      : map_(map), out_(out), chord_(chord), context_(context) {}
+  Refinement(const WallMap& map, SheetTriangles& out, double chord, double longest, const Context& context)
+      : map_(map), out_(out), chord_(chord), longest_(longest), context_(context) {}
 
   void run() {
     flip_all();
@@ -130,7 +130,7 @@ class Refinement {
   /// Splits inner edges and triangles whose middles are too far from the sheet, the worst edges first.
   bool split_all() {
     struct Edge {
-      double error;
+      double error;  ///< relative to what is allowed
       std::uint32_t a, b;
       std::array<std::uint32_t, 2> at;
     };
@@ -138,8 +138,9 @@ class Refinement {
     for (const auto& [ends, at] : sides()) {
       if (at[1] == none) continue;
       const auto& [a, b] = ends;
-      const double error = error_at(middle(a, b), {a, b});
-      if (error > chord_) edges.push_back({error, a, b, at});
+      const double error =
+          std::max(error_at(middle(a, b), {a, b}) / chord_, length(out_.points[a] - out_.points[b]) / longest_);
+      if (error > 1) edges.push_back({error, a, b, at});
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& p, const Edge& q) {
       return p.error != q.error ? p.error > q.error : std::pair(p.a, p.b) < std::pair(q.a, q.b);
@@ -177,6 +178,7 @@ class Refinement {
   const WallMap& map_;
   SheetTriangles& out_;
   const double chord_;
+  const double longest_;
   const Context& context_;
 };
 
@@ -195,7 +197,7 @@ bool is_one_to_one(const SheetTriangles& sheet) {
 }  // namespace
 
 std::optional<SheetTriangles> sheet_triangles(const WallMap& map, const std::vector<std::vector<Vec3d>>& loops,
-                                              double chord, const Context& context) {
+                                              double chord, double longest, const Context& context) {
   SheetTriangles out;
   detail::PlanePolygon polygon;
   std::vector<std::uint32_t> number;  // of each point of the polygon
@@ -213,7 +215,7 @@ std::optional<SheetTriangles> sheet_triangles(const WallMap& map, const std::vec
   const auto triangles = detail::triangulate(polygon, detail::EarOrder::in_turn, context);
   if (!triangles) return std::nullopt;
   for (const Triangle& t : *triangles) out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-  Refinement(map, out, chord, context).run();
+  Refinement(map, out, chord, longest, context).run();
   return is_one_to_one(out) ? std::optional(std::move(out)) : std::nullopt;
 }
 

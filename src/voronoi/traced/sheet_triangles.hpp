@@ -26,10 +26,11 @@ struct SheetTriangles {
 /// not split.
 /// @param loops  points of the boundary; the outer loop first.
 /// @param chord  largest difference of these places and distances, > 0, mesh units.
+/// @param longest  inner edges that are longer are split, > 0, mesh units.
 /// @return nothing if the loops cross in the plane.
 /// @throws Cancelled.
 [[nodiscard]] std::optional<SheetTriangles> sheet_triangles(const WallMap& map,
                                                             const std::vector<std::vector<Vec3d>>& loops, double chord,
-                                                            const Context& context);
+                                                            double longest, const Context& context);
 
 }  // namespace blum::voronoi

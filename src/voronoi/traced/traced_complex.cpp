@@ -37,13 +37,14 @@ struct Vertex {
 class Assembly {
  public:
   Assembly(const MeshView& mesh, const SiteTable& table, const TracedSites& sites, const TracedStructure& structure,
-           VoronoiPart part, double chord, const Context& context)
+           VoronoiPart part, double chord, double longest, const Context& context)
       : mesh_(mesh),
         table_(table),
         sites_(sites),
         structure_(structure),
         part_(part),
         chord_(chord),
+        longest_(longest),
         context_(context),
         tracer_(sites) {}
 
@@ -151,6 +152,12 @@ class Assembly {
       std::vector<std::vector<bool>> is_split(structure_.curves.size());
       for (std::size_t c = 0; c < is_split.size(); ++c) is_split[c].resize(points_of_curve_[c].size() - 1);
       for (const Sheet& sheet : sheets) mark_pieces(sheet, is_new, is_split);
+      for (std::size_t c = 0; c < is_split.size(); ++c) {
+        for (std::size_t k = 0; k < is_split[c].size() && !structure_.curves[c].is_edge; ++k) {
+          const std::vector<std::uint32_t>& list = points_of_curve_[c];
+          if (length(vertices_[list[k + 1]].at - vertices_[list[k]].at) > longest_) is_split[c][k] = true;
+        }
+      }
       bool is_any = false;
       for (std::size_t c = 0; c < is_split.size(); ++c) {
         is_new[c] = split(structure_.curves[c], is_split[c], points_of_curve_[c]);
@@ -368,7 +375,7 @@ class Assembly {
       if (list.size() < 3) return false;
     }
     const WallMap map(sites_, sheet.first, sheet.second, normal_of(sheet), loops[0]);
-    const auto made = sheet_triangles(map, loops, chord_, context_);
+    const auto made = sheet_triangles(map, loops, chord_, longest_, context_);
     if (!made) return false;
     std::vector<Index> pair{std::min(sheet.first, sheet.second), std::max(sheet.first, sheet.second)};
     for (std::size_t k = number.size(); k < made->points.size(); ++k) {
@@ -415,8 +422,8 @@ class Assembly {
     }
   }
 
-  /// Gives sheets that share only a vertex of the polyhedron vertices of their own. Points of the medial axis lie inside
-  /// the solid, so its sheets are not connected there.
+  /// Gives sheets that share only a vertex of the polyhedron vertices of their own. Points of the medial axis lie
+  /// inside the solid, so its sheets are not connected there.
   void part_at_surface() {
     std::map<std::uint32_t, std::vector<std::pair<std::size_t, std::size_t>>> corners_at;  // (triangle, corner)
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -564,6 +571,7 @@ class Assembly {
   const TracedStructure& structure_;
   const VoronoiPart part_;
   const double chord_;
+  const double longest_;
   const Context& context_;
   const SeamTracer tracer_;
   std::vector<std::vector<std::uint32_t>> triangles_of_;     ///< of each face
@@ -577,9 +585,9 @@ class Assembly {
 }  // namespace
 
 std::optional<Complex> traced_complex(const MeshView& mesh, const SiteTable& table, const TracedSites& sites,
-                                      const TracedStructure& structure, VoronoiPart part, double chord,
+                                      const TracedStructure& structure, VoronoiPart part, double chord, double longest,
                                       const Context& context) {
-  return Assembly(mesh, table, sites, structure, part, chord, context).build();
+  return Assembly(mesh, table, sites, structure, part, chord, longest, context).build();
 }
 
 }  // namespace blum::voronoi

@@ -18,9 +18,11 @@ namespace blum::voronoi {
 /// Returns the complex of a traced structure, with the columns of VoronoiComplex and the column `junction`. Nothing if
 /// a sheet cannot be divided into triangles.
 /// @param chord  largest distance of the middles of edges and triangles from curved seams and sheets, > 0, mesh units.
+/// @param longest  inner edges of triangles, and pieces of seams, are at most about as long, > 0, mesh units.
 /// @throws Cancelled.
 [[nodiscard]] std::optional<Complex> traced_complex(const MeshView& mesh, const SiteTable& table,
                                                     const TracedSites& sites, const TracedStructure& structure,
-                                                    VoronoiPart part, double chord, const Context& context);
+                                                    VoronoiPart part, double chord, double longest,
+                                                    const Context& context);
 
 }  // namespace blum::voronoi
