@@ -12,15 +12,18 @@ regions lie below the graph of min(d, t) and above its mirror image, where t = H
 arcs and nodes and from the level d = t (`prism()`).
 
 How sheets, seams and junctions are counted:
-- A sheet is a connected component of the wall of one pair of sites: of the points at which these two are closest and
-  no other site is. The walls between a face and its own reflex edge are sheets, too.
-- A seam is a connected component of the points with one set of three or more closest sites, if it is a curve.
-- A junction is a point in which seams end: it has four or more closest sites, or is a vertex of the polyhedron.
-- At a convex edge of the polyhedron, the sheet of its two faces ends. This is no seam.
-- At a reflex edge e of faces f and g, the sheets f/e and g/e end. Points of the edge are closest to themselves, and so to
-  f, e and g. They are no seam for `counts()` and a seam for `counts(surface=True)`: diagrams with the surface's edges,
-  as `blum voronoi --walls` has them, show this curve with three sites.
-- Each vertex of the prism is a junction, because one seam ends in it (convex corner), or two (reflex corner).
+
+- A sheet is a connected part of the wall of one pair of sites. To its points, no third site is as close. Walls between
+  a face and its own reflex edge have sheets, too.
+- A seam is a connected curve of points with the same three or more closest sites.
+- In a junction, seams end. It has four or more closest sites, or is a vertex of the polyhedron.
+- At a convex edge of the polyhedron, the sheet of its two faces ends. The edge does not count as a seam.
+- At a reflex edge e of faces f and g, the sheets f/e and g/e end. The edge does not count as a seam by default.
+- One seam ends in a convex vertex of a prism. Two seams end in a reflex one: cap/f/e and cap/g/e. Both vertices are
+  junctions.
+
+Other counts treat reflex edges differently. `counts("seams")` counts them as seams, with the sites f, e and g.
+`counts("joined")` counts cap/f/e and cap/g/e as one seam, which passes the vertex without a junction.
 """
 
 import decimal
@@ -54,7 +57,7 @@ class Arc(NamedTuple):
 
     sites: tuple  # In order.
     ends: tuple
-    distances: tuple  # Of the ends from the border.
+    distances: tuple  # From the border to the ends.
     least: D  # The least distance along the arc.
     is_own: bool  # If the arc lies between a side and its own reflex corner.
 
@@ -291,7 +294,7 @@ class Diagram:
     def _least(self, pair, first, second, distances):
         """The least distance along an arc. It is convex, and least inside only across from two facing points."""
         s, t = pair
-        a, b = self.sites[s], self.sites[t]
+        b = self.sites[t]
         if b.is_side or self._own(s, t):
             return min(distances)
         v = self.corners[b.corner]
@@ -396,10 +399,12 @@ class Prism(NamedTuple):
     areas: dict  # Area of all sheets of each pair, to about 1e-12 of the square of the size.
     is_degenerate: bool  # A seam has more than three sites, or a junction more than four.
 
-    def counts(self, surface=False):
-        """Sheets, seams and junctions. `surface` counts reflex edges as seams, too."""
-        seams = self.seams.total() + (self.reflex.total() if surface else 0)
-        return self.sheets.total(), seams, self.junctions.total()
+    def counts(self, reflex="ends"):
+        """Sheets, seams and junctions. `reflex` is "ends", "seams" or "joined", as the top of this file explains."""
+        sheets, seams, junctions = self.sheets.total(), self.seams.total(), self.junctions.total()
+        edges = self.reflex.total()
+        changes = {"ends": (0, 0), "seams": (edges, 0), "joined": (-2 * edges, -2 * edges)}[reflex]
+        return sheets, seams + changes[0], junctions + changes[1]
 
 
 def prism(diagram, height):
@@ -512,7 +517,7 @@ class _Levels:
         for k, side in enumerate(self.side):
             if side > 0:
                 root(k)
-        for number, arc in enumerate(self.diagram.arcs):
+        for arc in self.diagram.arcs:
             ends = [self.compared(d) for d in arc.distances]
             if max(ends) <= 0:
                 continue
@@ -526,9 +531,9 @@ class _Levels:
 class _Areas:
     """Areas of the sheets of a prism, by Gauss quadrature of exact integrals along the arcs.
 
-    The graph of d has the slope 1, so the sheet of a cap and a site has sqrt(2) times the area of the part of the
-    site's region below the level. For a side, this is the integral of min(d, t) over the closest points. For a corner,
-    it is that of min(d, t)^2 / 2 over angles.
+    The graph of d has the slope 1. So the sheet of a cap and a site has sqrt(2) times the area of the site's region
+    below the level. For a side, this is the integral of min(d, t) over the closest points. For a corner, it is that of
+    min(d, t)^2 / 2 over angles.
     """
 
     def __init__(self, levels):

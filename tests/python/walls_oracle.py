@@ -16,18 +16,19 @@ Every point inside is p + r m. Here p is its closest point of the border, on sit
 From p, a ball grows along m. At r = R(p, m) it touches a site j that stops it, at the contact q. Its centre c lies on
 the wall of i and j, and all of the segment from p to c lies in the region of i. So
 
-    volume of the region of i = integral of R^(k+1) / (k+1) over the bundle,
-    area of the wall of i and j = integral of R^k / cos over the part of the bundle that j stops.
+- The volume of the region of i is the integral of R^(k+1) / (k+1) over the bundle.
+- The area of the wall of i and j is the integral of R^k / cos over the part of the bundle that j stops.
 
 R^k is the area that the parallel surface through c has for a unit of the bundle. The wall is orthogonal to the gradient
 m - u of the difference of both distances, where u = (c - q) / R. So the cosine between m and the wall's normal is
 m . (m - u) / |m - u| = |m - u| / 2. Bundles of i and of j give the same area twice.
 
-Walls at which both sites have the same closest point have m = u and no bundle sees them. They are found on their own:
-- a face and its own reflex edge e share the points p + r m with p in e, m the face's inward normal and r <= R(p, m).
-  The area is the integral of R over e.
-- an edge e and its end v, or two edges in one line that meet in v, share the points v + r m with m in the dual cone of
-  v, orthogonal to e. The area is the integral of R^2 / 2 over the angle of m.
+No bundle sees walls at which both sites have the same closest point, because m = u there. These are found alone:
+
+- A face and its own reflex edge e share the points p + r m with r <= R(p, m). Here p is in e, and m is the face's
+  normal. The area is the integral of R over e.
+- An edge e and its end v share the points v + r m with r <= R. Here m is in the dual cone of v and orthogonal to e. The
+  area is the integral of R^2 / 2 over the angle of m. Two edges in one line that meet in v share such points, too.
 
 Bundles are cut into small triangles of equal measure, with two random points in each. Differences of the two give the
 standard error. It falls faster than that of independent points, about as N^(-3/4). Sites whose walls are larger get
@@ -79,6 +80,7 @@ class Sites(NamedTuple):
     bundles: list  # For each site, base triangles [n, 3, d] of the parameters of its bundle.
     faces_of_edge: list  # For each reflex edge, the two faces (f, g).
     own: list  # Walls whose points have one closest point.
+    own_seams: list  # Sets of sites of the seams whose points have one closest point, which is a vertex.
     hidden: np.ndarray  # [i, j]: site i lies in the plane, on the line or at the point of site j.
 
     def name(self, k):
@@ -87,7 +89,10 @@ class Sites(NamedTuple):
 
 
 class Wall(NamedTuple):
-    """`sides` are the areas seen from the first and the second site of the pair; (area, area) for own walls."""
+    """`sides` are the areas seen from the first and the second site of the pair; (area, area) for own walls.
+
+    The area is a mean of both, with a weight that does not depend on them.
+    """
 
     area: float
     error: float  # Standard error of the area.
@@ -102,6 +107,11 @@ class Walls(NamedTuple):
     own: dict  # The same for walls whose points have one closest point.
     volumes: np.ndarray  # [sites] of the regions.
     errors: np.ndarray  # [sites] standard errors of the volumes.
+    grains: np.ndarray  # [sites] mean area of wall for which a ball of the site stands.
+
+    def smallest(self, pair):
+        """Walls of the pair that are smaller may be missed: less than 20 balls are expected on them."""
+        return 20 * min(self.grains[list(pair)])
 
     def areas(self):
         """Areas and standard errors of all walls, own ones too, by pair."""
@@ -150,7 +160,8 @@ def sites_of(vertices, triangles, tolerance=0.0):
     bundles += [_fan(cones[v][0]) for v in corners]
     own = _own_walls(points, normals, reflex, faces_of_edge, cones, corners)
     hidden = _hidden(sites, whole, points, triangles, vectors, tolerance)
-    return Sites(sites, points, triangles, face_of, normals, offsets, bundles, faces_of_edge, own, hidden)
+    own_seams = _own_seams(normals, reflex, faces_of_edge, points, cones, corners)
+    return Sites(sites, points, triangles, face_of, normals, offsets, bundles, faces_of_edge, own, own_seams, hidden)
 
 
 def _edges(triangles):
@@ -297,6 +308,22 @@ def _own_walls(points, normals, reflex, faces_of_edge, cones, corners):
     return out
 
 
+def _own_seams(normals, reflex, faces_of_edge, points, cones, corners):
+    """A ray of the dual cone of a vertex is the normal of a face. Its edges at the vertex are closest to it, too."""
+    out = []
+    for v, (rays, full) in cones.items():
+        at = [e for e, edge in enumerate(reflex) if v in edge]
+        for ray in rays:
+            along = {e: points[reflex[e][1]] - points[reflex[e][0]] for e in at}
+            held = [e for e in at if abs(ray @ along[e]) < 1e-6 * np.linalg.norm(along[e])]
+            faces = {f for e in held for f in faces_of_edge[e] if ray @ normals[f] < -1 + 1e-9}
+            own = sorted(faces) + [len(normals) + e for e in held]
+            own += [len(normals) + len(reflex) + corners.index(v)] if full else []
+            if len(own) > 2 and (full or len(held) > 1):
+                out.append(tuple(own))
+    return out
+
+
 def _in_line(points, one, other):
     a, b = (points[edge[1]] - points[edge[0]] for edge in (one, other))
     return np.linalg.norm(np.cross(a, b)) < 1e-6 * np.linalg.norm(a) * np.linalg.norm(b)
@@ -358,7 +385,8 @@ def walls(vertices, triangles, count=1_000_000, seed=1, tolerance=0.0):
         before = own.get(wall.pair, Wall(0.0, 0.0, 0, (0.0, 0.0), (0.0, 0.0)))
         area, error = before.area + area, math.hypot(before.error, error)
         own[wall.pair] = Wall(area, error, before.hits + 1, (area, area), (error, error))
-    return Walls(sites, _by_pair(bundles), dict(sorted(own.items())), *_volumes(bundles))
+    grains = np.array([bundle.weight.mean() for bundle in bundles])
+    return Walls(sites, _by_pair(bundles), dict(sorted(own.items())), *_volumes(bundles), grains)
 
 
 class _Bundle(NamedTuple):
@@ -371,14 +399,15 @@ class _Bundle(NamedTuple):
 
 def _measure(sites, search, k, count, rng):
     """The balls of site k."""
-    cells = _cells(sites.bundles[k], count)
+    cells = _cells(sites.bundles[k], count, rng)
     power = ("face", "edge", "vertex").index(sites.sites[k].kind)
     weight, volume = np.empty((len(cells), 2)), np.empty((len(cells), 2))
     stop = np.empty((len(cells), 2), dtype=np.int64)
     for low in range(0, len(cells), BLOCK // 2):
         part = slice(low, low + BLOCK // 2)
         places = _in_cells(cells[part], rng)
-        p, m, density = _contacts(sites, k, places, cells[part])
+        p, m = _contacts(sites, k, places)
+        density = _densities(sites, k, places, cells[part])
         radii, found, contacts = search.grow(k, p, m)
         centres = p + radii[:, None] * m
         cosine = np.linalg.norm(m - (centres - contacts) / radii[:, None], axis=1) / 2
@@ -388,9 +417,9 @@ def _measure(sites, search, k, count, rng):
     return _Bundle(weight, volume, stop)
 
 
-def _cells(base, count):
-    """Triangles [n, 3, d] that cut the base triangles, by halving longest sides, into about count / 2. Close ones
-    follow each other."""
+def _cells(base, count, rng):
+    """About count / 2 triangles [n, 3, d] that cut the base triangles across longest sides. Close ones follow each
+    other."""
     sizes = _sizes(base)
     out = []
     for triangle, share in zip(base, sizes / sizes.sum(), strict=True):
@@ -399,7 +428,7 @@ def _cells(base, count):
             sides = np.linalg.norm(np.roll(part, -1, axis=1) - part, axis=2)
             turned = (sides.argmax(axis=1)[:, None] + np.arange(3)) % 3
             a, b, c = np.moveaxis(part[np.arange(len(part))[:, None], turned], 1, 0)
-            middle = (a + b) / 2
+            middle = a + rng.uniform(0.4, 0.6, size=(len(part), 1)) * (b - a)  # Cells follow no seam of regular solids.
             part = np.stack([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)], 1).reshape(-1, *base.shape[1:])
         out.append(part)
     return np.concatenate(out)
@@ -420,26 +449,46 @@ def _in_cells(cells, rng):
     return (a + u * (b - a) + v * (c - a)).reshape(-1, cells.shape[2])
 
 
-def _contacts(sites, k, places, cells):
-    """Points p, directions m, and for each of them the measure of its cell by the density at the place."""
+def _contacts(sites, k, places):
+    """Points p and unit vectors m at places of the bundle of site k."""
     kind, members = sites.sites[k]
-    sizes = np.repeat(_sizes(cells), 2)
     if kind == "face":
-        return places, np.tile(-sites.normals[k], (len(places), 1)), sizes
+        return places, np.tile(-sites.normals[k], (len(places), 1))
     if kind == "edge":
         a, b = sites.points[list(members)]
-        length = np.linalg.norm(b - a)
-        first, second = (-sites.normals[f] for f in sites.faces_of_edge[k - len(sites.normals)])
-        across = second - (second @ first) * first
-        across /= np.linalg.norm(across)
-        angle = np.arctan2(second @ across, second @ first)
-        turn = angle * places[:, 1:] / length
-        p = a + places[:, :1] * (b - a) / length
-        return p, np.cos(turn) * first + np.sin(turn) * across, sizes * angle / length
+        along = places / np.linalg.norm(b - a)
+        return a + along[:, :1] * (b - a), _turned(*_sides_of_edge(sites, k), along[:, 1])
     lengths = np.linalg.norm(places, axis=1)
+    return np.tile(sites.points[members[0]], (len(places), 1)), places / lengths[:, None]
+
+
+def _densities(sites, k, places, cells):
+    """The measure of each place's cell, if its density was that of the place."""
+    kind, members = sites.sites[k]
+    if kind == "face":
+        return np.repeat(_sizes(cells), 2)
+    if kind == "edge":
+        a, b = sites.points[list(members)]
+        return np.repeat(_sizes(cells), 2) * _angle(*_sides_of_edge(sites, k)) / np.linalg.norm(b - a)
+    # The solid angle of a flat triangle is the integral of the cosine over the square of the distance.
     normals = np.repeat(_area_vectors(cells), 2, axis=0)
-    density = np.abs(np.einsum("ij,ij->i", places, normals)) / lengths**3
-    return np.tile(sites.points[members[0]], (len(places), 1)), places / lengths[:, None], density
+    return np.abs(np.einsum("ij,ij->i", places, normals)) / np.linalg.norm(places, axis=1) ** 3
+
+
+def _sides_of_edge(sites, k):
+    return (-sites.normals[f] for f in sites.faces_of_edge[k - len(sites.normals)])
+
+
+def _angle(first, second):
+    return np.arctan2(np.linalg.norm(np.cross(first, second)), first @ second)
+
+
+def _turned(first, second, parts):
+    """Unit vectors at parts of the angle between two of them."""
+    across = second - (second @ first) * first
+    across /= np.linalg.norm(across)
+    turn = _angle(first, second) * parts
+    return np.outer(np.cos(turn), first) + np.outer(np.sin(turn), across)
 
 
 class _Search:
@@ -527,6 +576,73 @@ def _in_triangle(points, corners, normal):
     return inside
 
 
+# Seams
+
+
+def seams(vertices, triangles, count=200_000, seed=1, tolerance=0.0):
+    """How often each set of three or more closest sites was found on seams, and a point of one of them.
+
+    If different sites stop two balls beside each other, bisection leads from one to the other until the stop changes.
+    The centre of that ball lies on a seam. Sites whose distances agree to 1e-10 belong to one set. So sets that were
+    found once or twice may belong to points near a junction. Seams whose points have one closest point are in
+    `sites.own_seams` only. Seams shorter than the cells may be missed, and so are those at the border of all of their
+    bundles. An example is the seam at which walls of two reflex edges with their own faces meet.
+    """
+    sites, rng = sites_of(vertices, triangles, tolerance), np.random.default_rng(seed)
+    search, out = _Search(sites), {}
+    for k, base in enumerate(sites.bundles):
+        pairs = _in_cells(_cells(base, count // len(sites.sites), rng), rng).reshape(-1, 2, base.shape[2])
+        pairs = np.concatenate([pairs, _across(base, rng)])
+        for low in range(0, len(pairs), BLOCK // 2):
+            for own, point in _crossings(sites, search, k, pairs[low : low + BLOCK // 2]):
+                times, first = out.get(own, (0, point + np.asarray(vertices, dtype=float)[0]))
+                out[own] = times + 1, first
+    return dict(sorted(out.items()))
+
+
+def _across(base, rng, count=64):
+    """Pairs of places on both sides of each side that two base triangles share."""
+    out = [np.zeros((0, 2, base.shape[2]))]
+    for one, other in itertools.combinations(base, 2):
+        shared = (one[:, None] == other).all(axis=2)
+        if shared.sum() != 2:
+            continue
+        a, b = one[shared.any(axis=1)]
+        place = a + rng.uniform(0.02, 0.98, size=(count, 1)) * (b - a)
+        apexes = one[~shared.any(axis=1)][0], other[~shared.any(axis=0)][0]
+        reach = max(np.linalg.norm(apex - place, axis=1).max() for apex in apexes)
+        step = 0.01 * min(1.0, np.linalg.norm(b - a) / reach)
+        out.append(np.stack([place + step * (apex - place) for apex in apexes], axis=1))
+    return np.concatenate(out)
+
+
+def _crossings(sites, search, k, pairs):
+    """Sets of sites and centres of balls between the two places [n, 2, d], if different sites stop their balls."""
+
+    def stops(places):
+        p, m = _contacts(sites, k, places)
+        return p, m, search.grow(k, p, m)
+
+    stop = stops(pairs.reshape(-1, pairs.shape[2]))[2][1].reshape(-1, 2)
+    rows = np.flatnonzero(stop[:, 0] != stop[:, 1])
+    if not len(rows):
+        return
+    low, high = pairs[rows].transpose(1, 0, 2)
+    for _ in range(45):
+        middle = (low + high) / 2
+        same = stops(middle)[2][1] == stop[rows, 0]
+        low, high = np.where(same[:, None], middle, low), np.where(same[:, None], high, middle)
+    p, m, (radii, _, _) = stops(low)
+    equal = np.zeros((len(rows), len(sites.sites)), dtype=bool)
+    equal[:, k] = True
+    equal[np.arange(len(rows)), stops(high)[2][1]] = True
+    for j in np.flatnonzero(~sites.hidden[k]):
+        found = getattr(search, f"_{sites.sites[j].kind}")(j, p, m, radii * (1 + 1e-10))[0]
+        equal[found, j] = True
+    for own, point in zip(equal, p + radii[:, None] * m, strict=True):
+        yield tuple(np.flatnonzero(own).tolist()), point
+
+
 # Sums
 
 
@@ -539,11 +655,7 @@ def _own_area(search, wall, count, rng):
         p, m = a + np.outer(places, b - a), np.tile(wall.rays[0], (2 * count, 1))
         values, whole = search.grow(wall.pair[1], p, m, hidden)[0], np.linalg.norm(b - a)
     else:
-        first, second = wall.rays
-        across = second - (second @ first) * first
-        across /= np.linalg.norm(across)
-        angle = np.arctan2(second @ across, second @ first)
-        m = np.outer(np.cos(angle * places), first) + np.outer(np.sin(angle * places), across)
+        angle, m = _angle(*wall.rays), _turned(*wall.rays, places)
         p = np.tile(wall.points[0], (2 * count, 1))
         values, whole = search.grow(wall.pair[1], p, m, hidden)[0] ** 2 / 2, angle
     values = values.reshape(-1, 2) * whole / count
@@ -568,7 +680,8 @@ def _by_pair(bundles):
     out = {}
     for i, j in sorted({tuple(sorted(pair)) for pair in sides}):
         one, other = sides.get((i, j), (0.0, least[i] ** 0.5, 0)), sides.get((j, i), (0.0, least[j] ** 0.5, 0))
-        area, error = (one[0] + other[0]) / 2, math.hypot(one[1], other[1]) / 2
+        part = least[j] / (least[i] + least[j])  # More weight for the side with smaller cells.
+        area, error = part * one[0] + (1 - part) * other[0], math.hypot(part * one[1], (1 - part) * other[1])
         out[i, j] = Wall(area, error, one[2] + other[2], (one[0], other[0]), (one[1], other[1]))
     return out
 
