@@ -11,12 +11,11 @@ distance from the side faces and edges is d, that in the plane; the distance fro
 regions lie below the graph of min(d, t) and above its mirror image, where t = H / 2. All of the structure follows from
 arcs and nodes and from the level d = t (`prism()`).
 
-How sheets, seams and junctions are counted:
+How sheets, seams and junctions are counted: A sheet is a connected part of the wall of one pair of sites. To its
+points, no third site is as close. Walls between a face and its own reflex edge have sheets, too. A seam is a connected
+curve of points with the same three or more closest sites. In a junction, seams end. It has four or more closest sites,
+or is a vertex of the polyhedron.
 
-- A sheet is a connected part of the wall of one pair of sites. To its points, no third site is as close. Walls between
-  a face and its own reflex edge have sheets, too.
-- A seam is a connected curve of points with the same three or more closest sites.
-- In a junction, seams end. It has four or more closest sites, or is a vertex of the polyhedron.
 - At a convex edge of the polyhedron, the sheet of its two faces ends. The edge does not count as a seam.
 - At a reflex edge e of faces f and g, the sheets f/e and g/e end. The edge does not count as a seam by default.
 - One seam ends in a convex vertex of a prism. Two seams end in a reflex one: cap/f/e and cap/g/e. Both vertices are

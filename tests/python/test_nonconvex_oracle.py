@@ -118,7 +118,7 @@ def test_walls_of_convex_solids(name):
     exact, found = structure(solid.vertices, solid.triangles), walls(solid.vertices, solid.triangles, 50_000)
     assert sorted(found.areas()) == sorted(tuple(sorted(sheet.faces)) for sheet in exact.sheets)
     for sheet in exact.sheets:
-        check(found, tuple(sorted(sheet.faces)), sheet.area, 0.02)
+        check(found, tuple(sorted(sheet.faces)), sheet.area, 0.03)
     assert found.volumes == pytest.approx(exact.regions, rel=0.01)
 
 

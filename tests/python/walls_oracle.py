@@ -14,10 +14,10 @@ Every point inside is p + r m. Here p is its closest point of the border, on sit
     vertex  2   m in the dual cone of the edges at the vertex               solid angle
 
 From p, a ball grows along m. At r = R(p, m) it touches a site j that stops it, at the contact q. Its centre c lies on
-the wall of i and j, and all of the segment from p to c lies in the region of i. So
+the wall of i and j, and all of the segment from p to c lies in the region of i.
 
-- The volume of the region of i is the integral of R^(k+1) / (k+1) over the bundle.
-- The area of the wall of i and j is the integral of R^k / cos over the part of the bundle that j stops.
+The volume of the region of i is the integral of R^(k+1) / (k+1) over the bundle. The area of the wall of i and j is the
+integral of R^k / cos over the part of the bundle that j stops.
 
 R^k is the area that the parallel surface through c has for a unit of the bundle. The wall is orthogonal to the gradient
 m - u of the difference of both distances, where u = (c - q) / R. So the cosine between m and the wall's normal is
