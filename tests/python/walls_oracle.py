@@ -14,7 +14,7 @@ Every point inside is p + r m. Here p is its closest point of the border, on sit
     vertex  2   m in the dual cone of the edges at the vertex               solid angle
 
 From p, a ball grows along m. At r = R(p, m) it touches a site j that stops it, at the contact q. Its centre c lies on
-the wall of i and j, and all of the segment from p to c lies in the region of i.
+the wall of i and j. All of the segment from p to c lies in the region of i.
 
 The volume of the region of i is the integral of R^(k+1) / (k+1) over the bundle. The area of the wall of i and j is the
 integral of R^k / cos over the part of the bundle that j stops.
@@ -34,7 +34,7 @@ Bundles are cut into small triangles of equal measure, with two random points in
 standard error. It falls faster than that of independent points, about as N^(-3/4). Sites whose walls are larger get
 more points.
 
-Cost: about 5 s for a million points and 30 sites, 15 s for 500 sites.
+Cost: about 1 s for a million points and 10 sites, 3 s for 70 sites, 20 s for 550 sites.
 """
 
 import argparse
@@ -50,6 +50,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from exact_signs import cross, dot, integers, minus
 
+FIRST = 12  # Sites that all balls of a block try. Further ones are tried if they are near the ball.
 BLOCK = 4096  # Points that grow together, all close to each other.
 ROUNDING = 1e-12  # Fraction of an area.
 INSIDE = 1e-12  # Fraction of an edge by which contacts may lie outside their triangle: rounding.
@@ -517,16 +518,31 @@ class _Search:
         middle, reach = (low + high) / 2, np.linalg.norm(high - low) / 2
         gaps = np.linalg.norm(self.middles - middle, axis=1) - self.reaches - reach
         radii, stop, contacts = np.full(len(p), np.inf), np.full(len(p), -1), np.zeros_like(p)
-        for j in np.argsort(gaps, kind="stable"):
+        order, rows, near = np.argsort(gaps, kind="stable"), np.arange(len(p)), None
+        for tried, j in enumerate(order[~hidden[order]]):
             if gaps[j] > 2 * radii.max():
                 break
-            if hidden[j]:
-                continue
-            rows, found, touched = getattr(self, f"_{self.sites.sites[j].kind}")(j, p, m, radii)
-            radii[rows], stop[rows], contacts[rows] = found, j, touched
+            if tried == FIRST:
+                near = self._near(p, m, radii)
+            if near is not None:
+                rows = np.flatnonzero(near[:, j])
+                if not len(rows):
+                    continue
+            method = getattr(self, f"_{self.sites.sites[j].kind}")
+            better, found, touched = method(j, p[rows], m[rows], radii[rows])
+            radii[rows[better]], stop[rows[better]], contacts[rows[better]] = found, j, touched
         if (stop < 0).any():
             raise ValueError("a ball grows without end; expected a closed solid with outward triangles")
         return radii, stop, contacts
+
+    def _near(self, p, m, radii):
+        """If the ball [i] of the radius so far, which holds all smaller ones, may touch site j [i, j]."""
+        known = np.isfinite(radii)
+        centres = p + np.where(known, radii, 0.0)[:, None] * m
+        squares = np.einsum("ij,ij->i", centres, centres)[:, None] + np.einsum("ij,ij->i", self.middles, self.middles)
+        squares -= 2 * centres @ self.middles.T
+        bounds = (np.where(known, radii, np.inf)[:, None] + self.reaches) ** 2
+        return squares <= bounds + 1e-9 * np.abs(squares).max()
 
     def _face(self, f, p, m, below):
         """Rows of the balls that face f stops before the radii `below`, with radii and contacts."""
