@@ -288,7 +288,7 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   timer.lap("errors");
   report.joined = sites.tolerance();
   report.faces = sites.face_count();
-  report.hausdorff_bound = 2 * chord;
+  report.chord = chord;
   report.certified = report.found == report.expected;
   return {};
 }

@@ -180,7 +180,13 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
   if (report.joined > 0) {
     table.detail("joined", "junctions and seams within " + share_text(report.joined, size) + " of each other are one");
   }
-  if (!report.exact) {
+  if (report.traced) {
+    table.add("traced", "walls are at most " + share_text(report.label_error, size) +
+                            " farther from their own sites than from the surface");
+  } else if (!report.trace_problem.empty()) {
+    table.add("traced", "no, cubes instead: " + report.trace_problem);
+  }
+  if (!report.exact && !report.traced) {
     table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
                               plural(report.splits, "split", "splits") + ", the smallest cube split " +
                               std::to_string(report.depth) + " times; " + rounded_text(report.governors) +
@@ -190,7 +196,9 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
   }
   table.add("complex", counts.text());
   if (report.certified) {
-    table.add("error", "Hausdorff distance from the exact diagram at most " + share_text(report.hausdorff_bound, size));
+    table.add("error", report.traced ? "chords of curved walls are within " + share_text(report.chord, size)
+                                     : "Hausdorff distance from the exact diagram at most " +
+                                           share_text(report.hausdorff_bound, size));
   }
 }
 

@@ -86,7 +86,8 @@ struct Description<VoronoiOptions> {
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
       Member{"method", &VoronoiOptions::method, "",
-             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always cubes"},
+             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always cubes; traced: as auto, but "
+             "seams are followed instead of cubes, if this succeeds"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "convex bodies: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
@@ -153,8 +154,8 @@ struct VoronoiReport {
   /// True if all bodies are convex, and the method was not `cubes`. Then each sheet, seam and junction is that of the
   /// exact diagram of the bodies' planes. See VoronoiReport::flatness and VoronoiReport::joined.
   bool exact = false;
-  double flatness = 0;  ///< If exact: largest distance of a triangle's corner from its face's plane, mesh units.
-  double joined = 0;    ///< If exact: junctions and seams within this distance are one, mesh units.
+  double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
+  double joined = 0;    ///< If exact or traced: junctions and seams within this distance are one, mesh units.
   /// If exact: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second, smaller one.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
   /// True if the seams were traced. Then sheets, seams and junctions are those of the diagram within rounding, as far
@@ -164,12 +165,16 @@ struct VoronoiReport {
   /// If traced: each point of a wall with two footprints is at most this much farther from the wall's own sites than
   /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
   double label_error = 0;
-  std::string trace_problem;  ///< Reason why the seams were not traced, and the place; empty if they were not to be.
+  /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
+  /// between vertices, mesh units.
+  double chord = 0;
+  std::string trace_problem;  ///< If tracing failed: the reason and the place.
   BettiNumbers expected{};    ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};       ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
   /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact, it
-  /// covers rounding and joined junctions, and the diagram is that of the planes, within `flatness` of the corners.
+  /// covers rounding and joined junctions, and the diagram is that of the planes, within `flatness` of the corners. 0
+  /// if traced: not known.
   double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
@@ -214,6 +219,8 @@ struct Description<VoronoiReport> {
              "true if the seams were traced: sheets, seams and junctions are those of the diagram within rounding"},
       Member{"label_error", &VoronoiReport::label_error, "mesh units",
              "if traced: points of walls are at most this much farther from the walls' sites than from the border"},
+      Member{"chord", &VoronoiReport::chord, "mesh units",
+             "if traced: largest distance of chords from curved seams and walls, at their middles"},
       Member{"trace_problem", &VoronoiReport::trace_problem, "", "reason why tracing failed; empty if it did not"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},

@@ -17,7 +17,7 @@ FileMetadata voronoi_metadata(VoronoiPart part, std::optional<double> hausdorff_
                    {"blum_version", std::string(version)},
                    {"certified", hausdorff_bound ? "true" : "false"}};
   if (hausdorff_bound) {
-    out.emplace_back("hausdorff_bound", exact_text(*hausdorff_bound));
+    if (*hausdorff_bound > 0) out.emplace_back("hausdorff_bound", exact_text(*hausdorff_bound));
   } else {
     out.emplace_back("failing_cubes", std::to_string(failing_cubes));
   }

@@ -1,0 +1,154 @@
+// Traced diagrams: counts of sheets, seams and junctions that are known by hand, and the maps of walls.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <stop_token>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
+#include "blum/voronoi/voronoi_complex.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
+#include "voronoi/traced/local_star.hpp"
+#include "voronoi/traced/sheet_triangles.hpp"
+#include "voronoi/traced/traced_sites.hpp"
+#include "voronoi/traced/traced_structure.hpp"
+#include "voronoi/traced/wall_map.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+using Counts = std::array<std::size_t, 3>;
+
+TriangleMesh prism(const std::vector<Point2>& outline, double thickness,
+                   const std::vector<std::vector<Point2>>& holes = {}) {
+  return make_extrusion(outline, holes, {.thickness = thickness});
+}
+
+const std::vector<Point2> ell{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 3}, {0, 3}};
+const std::vector<Point2> square{{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+const std::vector<std::vector<Point2>> middle_hole{{{1, 1}, {1, 3}, {3, 3}, {3, 1}}};
+
+VoronoiComplex walls_of(const TriangleMesh& mesh, const Context& context = {}) {
+  return voronoi_complex(mesh, {.part = VoronoiPart::walls, .method = VoronoiMethod::traced}, context);
+}
+
+Counts counts_of(const TriangleMesh& mesh) {
+  const VoronoiComplex walls = walls_of(mesh);
+  EXPECT_TRUE(walls.report.traced) << walls.report.trace_problem;
+  EXPECT_TRUE(walls.report.certified);
+  const VoronoiGraph graph = voronoi_graph(walls.complex);
+  return {graph.walls.size(), graph.seams.size(), graph.junctions.size()};
+}
+
+TracedSites sites_of(const TriangleMesh& mesh) {
+  const SiteTable table(mesh);
+  return *TracedSites::of(mesh, table, polyhedron_sites(mesh, table), 0);
+}
+
+/// A profile of n sides, r reflex corners, A arcs and N nodes makes a long prism of 2 (n + r) + A sheets, 2 A + N seams
+/// and 2 N + 2 n junctions. The L has 6, 1, 11 and 5.
+TEST(TracedDiagram, OfALongPrismHasTheCountsOfItsProfile) {
+  EXPECT_EQ(counts_of(prism(ell, 20)), (Counts{25, 27, 22}));
+}
+
+/// In the frame, the walls of opposite reflex edges meet in seams of four sites.
+TEST(TracedDiagram, OfAFrameHasTheCountsOfItsProfile) {
+  EXPECT_EQ(counts_of(prism(square, 20, middle_hole)), (Counts{48, 60, 40}));
+}
+
+/// In a thin plate, the sheet between both sides ends in one seam after the other.
+TEST(TracedDiagram, OfAThinPrismHasASheetBetweenBothSides) {
+  EXPECT_EQ(counts_of(prism(ell, 0.5)), (Counts{22, 21, 19}));
+}
+
+TEST(TracedDiagram, DoesNotDependOnThePlaceOfTheSolid) {
+  TriangleMesh mesh = prism(ell, 20);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (Vec3d& p : mesh.vertices) p = Vec3d{c * p.x - s * p.z, p.y, s * p.x + c * p.z} * 1e-3 + Vec3d{7, -5, 3};
+  EXPECT_EQ(counts_of(mesh), (Counts{25, 27, 22}));
+}
+
+TEST(TracedDiagram, DoesNotDependOnThreads) {
+  const TriangleMesh mesh = make_bracket();
+  const VoronoiComplex one = walls_of(mesh, {.threads = 1});
+  const VoronoiComplex four = walls_of(mesh, {.threads = 4});
+  EXPECT_TRUE(one.report.traced) << one.report.trace_problem;
+  EXPECT_EQ(one.complex.positions, four.complex.positions);
+  EXPECT_EQ(one.complex.triangles, four.complex.triangles);
+  EXPECT_EQ(one.report.label_error, four.report.label_error);
+}
+
+TEST(TracedDiagram, IsCancelled) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(std::ignore = walls_of(make_bracket(), {.cancel = stop.get_token()}), Cancelled);
+}
+
+/// Each point of a traced wall is as far from its two sites as from the border.
+TEST(TracedDiagram, HasWallsBetweenTheirClosestSites) {
+  const TriangleMesh mesh = make_bracket();
+  const VoronoiComplex walls = walls_of(mesh);
+  ASSERT_TRUE(walls.report.traced) << walls.report.trace_problem;
+  EXPECT_LE(walls.report.label_error, 2 * walls.report.chord);
+  const TracedSites sites = sites_of(mesh);
+  const auto radii = walls.complex.vertex_columns.get<double>("radius");
+  for (std::size_t v = 0; v < radii.size(); ++v) {
+    const Vec3d at = walls.complex.positions[v] - sites.origin();
+    EXPECT_NEAR(sites.closest(at, sites.tolerance()).radius, radii[v], 16 * sites.tolerance());
+  }
+}
+
+/// A solid whose faces are bent by more than the tolerance has no traced diagram of its joined faces.
+TEST(TracedDiagram, FallsBackToCubesWithAReason) {
+  TriangleMesh mesh = prism(ell, 2);
+  const VoronoiOptions options{.method = VoronoiMethod::traced, .flatness = 0.5};
+  const VoronoiComplex all = voronoi_complex(mesh, options);
+  EXPECT_TRUE(all.report.traced || !all.report.trace_problem.empty());
+  EXPECT_TRUE(all.report.certified);
+}
+
+/// Around the middle line of a square bar, four regions meet along one seam.
+TEST(LocalStar, FindsASeamOfFourRegions) {
+  const TracedSites sites = sites_of(prism({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, 10));
+  const Vec3d middle{};
+  const TracedSites::Closest closest = sites.closest(middle, sites.tolerance());
+  ASSERT_EQ(closest.sites.size(), 4U);
+  const std::vector<SeamRay> rays = LocalStar(sites, middle, closest.sites).rays();
+  ASSERT_EQ(rays.size(), 2U);
+  for (const SeamRay& ray : rays) {
+    EXPECT_EQ(ray.ring.germs.size(), 4U);
+    EXPECT_NEAR(std::abs(ray.direction.z), 1, 1e-12);
+  }
+}
+
+TEST(WallMap, ReturnsThePointsOfCurvedWalls) {
+  const TriangleMesh mesh = prism(ell, 20);
+  const TracedSites sites = sites_of(mesh);
+  const SeamTracer tracer(sites);
+  TracedSites::Index edge = 0;
+  while (sites[edge].kind != SiteKind::edge) ++edge;
+  std::size_t count = 0;
+  for (TracedSites::Index face = 0; face < edge; ++face) {
+    if (sites.side_between(face, edge) != nullptr) continue;
+    const Vec3d& n = sites[face].direction;
+    const Vec3d foot = sites.foot(face, sites[edge].point + sites[edge].direction * 9.0);
+    const Vec3d at = foot + n * touching_radius(sites[edge], foot, n);
+    if (!(length(at) < 100)) continue;
+    const WallMap map(sites, face, edge, {}, std::array{at});
+    const Vec3d back = map.from_plane(map.to_plane(at));
+    EXPECT_NEAR(length(back - at), 0, 1e-12);
+    EXPECT_NEAR(sites.distance(face, at), sites.distance(edge, at), 1e-12);
+    ++count;
+  }
+  EXPECT_GT(count, 2U);
+}
+
+}  // namespace
+}  // namespace blum::voronoi
