@@ -194,7 +194,7 @@ void finish_planes(const MeshView& mesh, const SiteTable& table, const ConvexBod
   report.flatness = bodies.flatness;
   report.joined = bodies.joined;
   for (const ConvexBody& body : bodies.bodies) {
-    report.faces += body.faces.planes.size();
+    report.faces += body.faces.site.size();
     report.joined_faces.insert(report.joined_faces.end(), body.faces.joined.begin(), body.faces.joined.end());
   }
   std::sort(report.joined_faces.begin(), report.joined_faces.end());

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "geometry/predicates/double2.hpp"
+#include "geometry/predicates/double2_rows.hpp"
 #include "geometry/predicates/expansion.hpp"
 
 namespace blum::detail {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "geometry/predicates/double2.hpp"
+#include "geometry/predicates/double2_rows.hpp"
 
 namespace blum {
 namespace {

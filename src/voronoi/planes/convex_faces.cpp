@@ -45,8 +45,8 @@ Integer dot(const IntegerPoint& a, const IntegerPoint& b) {
 class Finder {
  public:
   Finder(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-         std::span<const std::uint32_t> component, double flatness)
-      : mesh_(mesh), table_(table), sites_(sites), component_(component), flatness_(flatness) {
+         std::span<const std::uint32_t> component, double flatness, const Context& context)
+      : mesh_(mesh), table_(table), sites_(sites), component_(component), flatness_(flatness), context_(context) {
     for (const std::uint32_t t : component_) {
       faces_[sites_.face_of[t]].triangles.push_back(t);
       for (const std::uint32_t v : mesh_.triangles[t]) vertices_.push_back(v);
@@ -67,6 +67,7 @@ class Finder {
     for (const auto& [first, group] : order) {
       if (!add(groups_[group])) return std::nullopt;
     }
+    out_.spaces = HalfSpaces(planes_, reach_, std::ldexp(1.0, exponent_), context_);
     if (is_joined && !is_convex()) return std::nullopt;
     add_neighbours();
     return std::move(out_);
@@ -239,11 +240,10 @@ class Finder {
         is_first = false;
       }
     }
-    out_.unit = std::ldexp(1.0, exponent_);
     for (std::size_t axis = 0; axis < 3; ++axis) origin_[axis] = in_units(out_.origin[axis], exponent_);
-    out_.reach = 1;
+    reach_ = 1;
     for (const std::uint32_t v : vertices_) {
-      for (const Integer& value : point(v)) out_.reach = std::max(out_.reach, Integer(2 * abs(value)));
+      for (const Integer& value : point(v)) reach_ = std::max(reach_, Integer(2 * abs(value)));
     }
   }
 
@@ -276,7 +276,7 @@ class Finder {
     // The normal of a triangle points outwards; that of a plane points inwards.
     IntegerPlane plane{{u[2] * v[1] - u[1] * v[2], u[0] * v[2] - u[2] * v[0], u[1] * v[0] - u[0] * v[1]}, 0};
     plane.offset = -dot(plane.normal, p);
-    out_.planes.push_back(std::move(plane));
+    planes_.push_back(std::move(plane));
     return true;
   }
 
@@ -293,7 +293,7 @@ class Finder {
     }
     plane.offset = -dot(plane.normal, at);
     for (Integer& value : plane.normal) value = detail::times_power(value, part);
-    out_.planes.push_back(std::move(plane));
+    planes_.push_back(std::move(plane));
     out_.flatness = std::max(out_.flatness, height_above(fit, triangles));
     return out_.flatness <= 2 * flatness_;
   }
@@ -303,7 +303,7 @@ class Finder {
     for (std::uint32_t plane = 0; plane < out_.triangles.size(); ++plane) {
       for (const std::uint32_t t : out_.triangles[plane]) plane_of[sites_.face_of[t]] = plane;
     }
-    out_.neighbours.resize(out_.planes.size());
+    out_.neighbours.resize(planes_.size());
     for (const auto& [face, found] : faces_) {
       std::vector<std::uint32_t>& list = out_.neighbours[plane_of[face]];
       for (const std::uint32_t other : found.neighbours) list.push_back(plane_of[other]);
@@ -324,7 +324,7 @@ class Finder {
 
   /// Returns true if no corner lies clearly outside a plane.
   [[nodiscard]] bool is_convex() const {
-    const HalfSpaces spaces(out_.planes, out_.reach, out_.unit);
+    const HalfSpaces& spaces = out_.spaces;
     for (HalfSpaces::Index plane = 0; plane < spaces.plane_count(); ++plane) {
       for (const std::uint32_t v : vertices_) {
         if (blum::dot(spaces.normal(plane), place(v)) + spaces.offset(plane) < -2 * flatness_) return false;
@@ -341,8 +341,11 @@ class Finder {
   std::vector<std::uint32_t> vertices_;
   std::map<std::uint32_t, Face> faces_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> groups_;
-  int exponent_ = 0;
+  const Context& context_;
+  int exponent_ = 0;  ///< of the unit, a power of two: coordinates minus those of the origin are multiples of it
   IntegerPoint origin_;
+  std::vector<IntegerPlane> planes_;  ///< in units
+  Integer reach_;                     ///< bound on the coordinates of the polyhedron, in units
   ConvexFaces out_;
 };
 
@@ -368,8 +371,9 @@ double rounding_of_coordinates(const MeshView& mesh) {
 }
 
 std::optional<ConvexFaces> convex_faces(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                                        std::span<const std::uint32_t> component, double flatness) {
-  return Finder(mesh, table, sites, component, flatness).find();
+                                        std::span<const std::uint32_t> component, double flatness,
+                                        const Context& context) {
+  return Finder(mesh, table, sites, component, flatness, context).find();
 }
 
 }  // namespace blum::voronoi

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -15,18 +16,16 @@
 
 namespace blum::voronoi {
 
-/// The planes of a convex polyhedron, in integers.
+/// The planes of a convex polyhedron.
 struct ConvexFaces {
-  std::vector<IntegerPlane> planes;  ///< facing inwards, in units of `unit`, relative to `origin`
-  std::vector<std::uint32_t> site;   ///< for each plane: its smallest face in PolyhedronSites; ascending
+  HalfSpaces spaces;                ///< of the planes, relative to `origin`
+  std::vector<std::uint32_t> site;  ///< for each plane: its smallest face in PolyhedronSites; ascending
   std::vector<std::vector<std::uint32_t>> triangles;   ///< for each plane: its triangles, ascending
   std::vector<std::vector<std::uint32_t>> neighbours;  ///< for each plane: the planes across its edges, ascending
   std::vector<Vec3d> middle;  ///< for each plane: a point in its polygon, mesh units, relative to `origin`
   std::vector<std::array<std::uint32_t, 2>> joined;  ///< {face, the smallest face of its plane} if these differ
   double flatness = 0;  ///< largest distance of a corner of a plane's triangles from the plane, mesh units
   Vec3d origin;
-  double unit = 1;  ///< a power of two: all coordinates minus those of the origin are multiples of it
-  Integer reach;    ///< bound on the coordinates of the polyhedron, in units
 };
 
 /// Returns the distance that rounding of a mesh's coordinates explains, mesh units. It is 16 times the rounding error
@@ -43,8 +42,10 @@ struct ConvexFaces {
 /// exact.
 /// @param component  triangles of the component, ascending.
 /// @param flatness   >= 0, mesh units.
+/// @throws Cancelled.
 [[nodiscard]] std::optional<ConvexFaces> convex_faces(const MeshView& mesh, const SiteTable& table,
                                                       const PolyhedronSites& sites,
-                                                      std::span<const std::uint32_t> component, double flatness);
+                                                      std::span<const std::uint32_t> component, double flatness,
+                                                      const Context& context);
 
 }  // namespace blum::voronoi

@@ -130,7 +130,7 @@ Joined join(PlaneStructure& structure, double tolerance, const Context& context)
 std::optional<ConvexBody> convex_body(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                                       std::span<const std::uint32_t> component, double flatness,
                                       const Context& context) {
-  std::optional<ConvexFaces> faces = convex_faces(mesh, table, sites, component, flatness);
+  std::optional<ConvexFaces> faces = convex_faces(mesh, table, sites, component, flatness, context);
   if (faces) {
     std::optional<PlaneStructure> structure = plane_structure(*faces, context);
     if (structure) return ConvexBody{std::move(*faces), std::move(*structure)};

@@ -19,12 +19,13 @@ struct PlaneCorner {
 
 /// Returns the vertices of the polytope of all half-spaces, each once, in the order of their planes.
 ///
-/// The region of a plane is a convex polyhedron. It starts as a large box, and each other half-space cuts it. Exact
-/// signs decide which vertices are cut off. Two vertices share an edge if no third vertex touches all half-spaces that
-/// both touch. All vertices of a region touch its plane, so each vertex is found once for each plane that it touches.
+/// The region of a plane is a convex polyhedron. It starts as a large box. Each of its vertices searches for a plane
+/// that it is outside of (PlaneTree). If there is one, the plane's half-space cuts the region. Otherwise, the vertex
+/// knows all planes that it touches. Signs are exact. The topology of the region follows from signs alone. All vertices
+/// of a region touch its plane, so each vertex is found once for each plane that it touches.
 ///
 /// @param is_bounded  receives false if the polytope is not bounded; then the result is empty.
-/// @throws Cancelled. Cost: about 0.1 us for each pair of planes and vertex of a region.
+/// @throws Cancelled. Cost: about 30 searches for each plane. Vertices that touch k planes cost k^2 exact signs.
 [[nodiscard]] std::vector<PlaneCorner> plane_corners(const HalfSpaces& spaces, const ConvexFaces& faces,
                                                      bool& is_bounded, const Context& context);
 

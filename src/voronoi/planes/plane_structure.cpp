@@ -101,7 +101,7 @@ class Builder {
 }  // namespace
 
 std::optional<PlaneStructure> plane_structure(const ConvexFaces& faces, const Context& context) {
-  const HalfSpaces spaces(faces.planes, faces.reach, faces.unit);
+  const HalfSpaces& spaces = faces.spaces;
   bool is_bounded = false;
   const std::vector<PlaneCorner> corners = plane_corners(spaces, faces, is_bounded, context);
   if (!is_bounded) return std::nullopt;

@@ -1,6 +1,8 @@
 #include "voronoi/planes/root_sum.hpp"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,17 +21,36 @@ std::optional<int> sign_with_bits(std::span<const RootTerm> terms, int bits) {
   Integer sum = 0;
   Integer error = 0;
   for (const RootTerm& term : terms) {
+    if (term.factor.is_zero()) continue;
     sum += term.factor * term.root->times_power(bits);
     error += abs(term.factor);
   }
-  if (abs(sum) > error) return sign_of(sum);
+  if (error.is_zero() || abs(sum) > error) return sign_of(sum);
   return std::nullopt;
+}
+
+template <std::uint32_t modulus>
+bool is_square_in(std::uint32_t value) {
+  static constexpr auto squares = [] {
+    std::array<bool, modulus> out{};
+    for (std::uint32_t k = 0; k < modulus; ++k) out[k * k % modulus] = true;
+    return out;
+  }();
+  return squares[value % modulus];
+}
+
+/// Returns false for most integers that are not squares.
+bool may_be_square(const Integer& value) {
+  constexpr std::uint32_t product = 64 * 63 * 65 * 11;
+  const auto rest = static_cast<std::uint32_t>(Integer(value % product));
+  return is_square_in<64>(rest) && is_square_in<63>(rest) && is_square_in<65>(rest) && is_square_in<11>(rest);
 }
 
 /// Returns sqrt(a * b) if it is an integer.
 std::optional<Integer> common_root(const Integer& a, const Integer& b) {
   if (a == b) return a;
   const Integer product = a * b;
+  if (!may_be_square(product)) return std::nullopt;
   Integer root = sqrt(product);
   if (root * root != product) return std::nullopt;
   return root;
@@ -58,8 +79,11 @@ bool is_zero(std::span<const RootTerm> terms) {
 }  // namespace
 
 Root::Root(detail::Integer square) : square_(std::move(square)) {
-  for (std::size_t k = 0; k < stored_bits.size(); ++k)
-    stored_[k] = sqrt(detail::times_power(square_, 2 * stored_bits[k]));
+  stored_.back() = sqrt(detail::times_power(square_, 2 * stored_bits.back()));
+  // Rounded down twice is rounded down once.
+  for (std::size_t k = 0; k + 1 < stored_bits.size(); ++k) {
+    stored_[k] = stored_.back() / detail::times_power(1, stored_bits.back() - stored_bits[k]);
+  }
 }
 
 detail::Integer Root::times_power(int bits) const {

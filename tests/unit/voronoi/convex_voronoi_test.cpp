@@ -508,7 +508,7 @@ TEST(ConvexVoronoi, RequestsToStopEndTheWork) {
     asked = std::chrono::steady_clock::now();
     stop.request_stop();
   });
-  EXPECT_THROW((void)voronoi_complex(double_cone(1000), {}, {.cancel = stop.get_token()}), Cancelled);
+  EXPECT_THROW((void)voronoi_complex(double_cone(5000), {}, {.cancel = stop.get_token()}), Cancelled);
   const auto ended = std::chrono::steady_clock::now();
   later.join();
   EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), 0.2);
