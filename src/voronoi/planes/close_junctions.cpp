@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
@@ -303,10 +304,91 @@ class Joiner {
   const Context& context_;
 };
 
-}  // namespace
+/// Returns V - E + F of the sheets and the surface.
+std::int64_t euler_number(const PlaneStructure& structure) {
+  std::vector<JunctionEdge> edges;
+  for (const std::vector<PlaneSheet>* list : {&structure.sheets, &structure.surface}) {
+    for (const PlaneSheet& sheet : *list) {
+      each_edge(sheet.junctions, [&](std::uint32_t a, std::uint32_t b) { edges.push_back(sorted_edge(a, b)); });
+    }
+  }
+  detail::sort_unique(edges);
+  return static_cast<std::int64_t>(structure.junctions.size() + structure.sheets.size() + structure.surface.size()) -
+         static_cast<std::int64_t>(edges.size());
+}
 
+/// Returns true if polygons form a sphere: each edge belongs to two, and the Euler number is 2.
+bool is_sphere(const std::vector<const PlaneSheet*>& polygons) {
+  std::vector<std::uint32_t> corners;
+  std::vector<JunctionEdge> edges;
+  for (const PlaneSheet* polygon : polygons) {
+    if (polygon->junctions.size() < 3) return false;
+    each_edge(polygon->junctions, [&](std::uint32_t a, std::uint32_t b) {
+      edges.push_back(sorted_edge(a, b));
+      corners.push_back(a);
+    });
+  }
+  const std::size_t sides = edges.size();
+  std::sort(edges.begin(), edges.end());
+  if (sides % 2 != 0) return false;
+  for (std::size_t k = 0; k < sides; k += 2) {
+    if (edges[k] != edges[k + 1]) return false;
+  }
+  detail::sort_unique(edges);
+  detail::sort_unique(corners);
+  return 2 * edges.size() == sides && corners.size() + polygons.size() == edges.size() + 2;
+}
+
+/// Returns true if a structure is that of planes that divide a ball into regions, one for each plane. Each plane then
+/// has one polygon, and the border of its region is a sphere. The union of all polygons has the Euler number 1 plus the
+/// number of regions.
+bool is_division(const PlaneStructure& structure, std::size_t planes) {
+  if (structure.surface.size() != planes) return false;
+  if (euler_number(structure) != 1 + static_cast<std::int64_t>(planes)) return false;
+  std::vector<std::vector<const PlaneSheet*>> borders(planes);
+  for (std::size_t plane = 0; plane < planes; ++plane) {
+    if (structure.surface[plane].first != plane) return false;
+    borders[plane].push_back(&structure.surface[plane]);
+  }
+  for (const PlaneSheet& sheet : structure.sheets) {
+    borders[sheet.first].push_back(&sheet);
+    borders[sheet.second].push_back(&sheet);
+  }
+  return std::all_of(borders.begin(), borders.end(), is_sphere);
+}
+
+/// Joins parts of a diagram that lie within a tolerance of each other. Junctions within the tolerance become one. A
+/// seam that passes a junction within the tolerance is divided there. Seams with the same ends become one, and sheets
+/// without an area vanish. A junction vanishes if exactly two seams end there, between the same regions.
+///
+/// The tolerance of a junction grows with its condition, up to 8 times: where planes meet at small angles, rounding
+/// moves it further.
+/// @param tolerance  >= 0, mesh units; 0 changes nothing.
+/// @return a bound on the Hausdorff distance between the diagram before and after, mesh units.
 double join_close_junctions(PlaneStructure& structure, double tolerance, const Context& context) {
   return tolerance > 0 ? Joiner(structure, tolerance, context).run() : 0;
+}
+
+}  // namespace
+
+JoinedJunctions restore_degenerate(PlaneStructure& structure, double tolerance, const Context& context) {
+  const std::size_t planes = structure.surface.size();
+  double size = 0;
+  for (const PlaneStructure::Junction& junction : structure.junctions) size = std::max(size, length(junction.at));
+  // Fractions of the size. The caller may ask for a larger distance than the search would try.
+  constexpr double most_searched = 1e-4;
+  constexpr double most_asked = 1e-2;
+  const double most = std::max(most_searched * size, std::min(tolerance, most_asked * size));
+  constexpr double step = 8;
+  for (double distance = tolerance; distance > 0 && distance <= most; distance *= step) {
+    PlaneStructure joined = structure;
+    const double moved = join_close_junctions(joined, distance, context);
+    if (joined.junctions.size() == structure.junctions.size()) return {};
+    if (!is_division(joined, planes)) continue;
+    structure = std::move(joined);
+    return {distance, moved};
+  }
+  return {};
 }
 
 }  // namespace blum::voronoi

@@ -6,18 +6,20 @@
 
 namespace blum::voronoi {
 
-/// Joins parts of a diagram that lie within a tolerance of each other. In a degenerate solid, like a cube, more than
-/// four regions meet in a junction. If rounding moves the planes, the junction falls apart into several, with short
-/// seams and thin sheets between them. This function restores the degenerate diagram. Junctions within the tolerance
-/// become one. A seam that passes a junction within the tolerance is divided there. Seams with the same ends become
-/// one, and sheets without an area vanish. A junction vanishes if exactly two seams end there, between the same
-/// regions.
+/// How parts of a diagram were joined, mesh units.
+struct JoinedJunctions {
+  double distance = 0;  ///< within which parts were joined; 0 if none were
+  double moved = 0;     ///< bound on the Hausdorff distance between the diagram before and after
+};
+
+/// Joins parts of a diagram that are close together. In a degenerate solid, like a cube, more than four regions meet in
+/// a junction. If rounding moves the planes, the junction falls apart into several, with short seams and thin sheets
+/// between them. This function restores the degenerate diagram.
 ///
-/// The tolerance of a junction grows with its condition, up to 8 times: where planes meet at small angles, rounding
-/// moves it further.
-/// @param tolerance  >= 0, mesh units; 0 changes nothing.
-/// @return a bound on the Hausdorff distance between the diagram before and after, mesh units.
+/// The result must divide the solid into one region for each plane. If it does not, more distant parts are joined, too:
+/// up to 1e-4 of the size, or up to the tolerance. If that does not help, nothing is joined.
+/// @param tolerance  >= 0, mesh units. With 0, or more than 1e-2 of the size, nothing is joined.
 /// @throws Cancelled.
-double join_close_junctions(PlaneStructure& structure, double tolerance, const Context& context);
+JoinedJunctions restore_degenerate(PlaneStructure& structure, double tolerance, const Context& context);
 
 }  // namespace blum::voronoi

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "blum/complex/medial_columns.hpp"
-#include "blum/core/sort_unique.hpp"
 #include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/triangle_components.hpp"
 #include "voronoi/label_geometry.hpp"
@@ -42,87 +41,6 @@ bool is_clearly_reflex(const MeshView& mesh, const PolyhedronSites& sites, doubl
     const auto [first, second] = sites.triangles_of[edge];
     return std::min(height(first, second), height(second, first)) > join_factor * flatness;
   });
-}
-
-/// Returns V - E + F of the sheets and the surface.
-std::int64_t euler_number(const PlaneStructure& structure) {
-  std::vector<JunctionEdge> edges;
-  for (const std::vector<PlaneSheet>* list : {&structure.sheets, &structure.surface}) {
-    for (const PlaneSheet& sheet : *list) {
-      each_edge(sheet.junctions, [&](std::uint32_t a, std::uint32_t b) { edges.push_back(sorted_edge(a, b)); });
-    }
-  }
-  detail::sort_unique(edges);
-  return static_cast<std::int64_t>(structure.junctions.size() + structure.sheets.size() + structure.surface.size()) -
-         static_cast<std::int64_t>(edges.size());
-}
-
-/// Returns true if polygons form a sphere: each edge belongs to two, and the Euler number is 2.
-bool is_sphere(const std::vector<const PlaneSheet*>& polygons) {
-  std::vector<std::uint32_t> corners;
-  std::vector<JunctionEdge> edges;
-  for (const PlaneSheet* polygon : polygons) {
-    if (polygon->junctions.size() < 3) return false;
-    each_edge(polygon->junctions, [&](std::uint32_t a, std::uint32_t b) {
-      edges.push_back(sorted_edge(a, b));
-      corners.push_back(a);
-    });
-  }
-  const std::size_t sides = edges.size();
-  std::sort(edges.begin(), edges.end());
-  if (sides % 2 != 0) return false;
-  for (std::size_t k = 0; k < sides; k += 2) {
-    if (edges[k] != edges[k + 1]) return false;
-  }
-  detail::sort_unique(edges);
-  detail::sort_unique(corners);
-  return 2 * edges.size() == sides && corners.size() + polygons.size() == edges.size() + 2;
-}
-
-/// Returns true if a structure is that of planes that divide a ball into regions, one for each plane. Each plane then
-/// has one polygon, and the border of its region is a sphere. The union of all polygons has the Euler number 1 plus the
-/// number of regions.
-bool is_division(const PlaneStructure& structure, std::size_t planes) {
-  if (structure.surface.size() != planes) return false;
-  if (euler_number(structure) != 1 + static_cast<std::int64_t>(planes)) return false;
-  std::vector<std::vector<const PlaneSheet*>> borders(planes);
-  for (std::size_t plane = 0; plane < planes; ++plane) {
-    if (structure.surface[plane].first != plane) return false;
-    borders[plane].push_back(&structure.surface[plane]);
-  }
-  for (const PlaneSheet& sheet : structure.sheets) {
-    borders[sheet.first].push_back(&sheet);
-    borders[sheet.second].push_back(&sheet);
-  }
-  return std::all_of(borders.begin(), borders.end(), is_sphere);
-}
-
-/// How parts of a structure were joined.
-struct Joined {
-  double distance = 0;  ///< within which parts were joined; 0 if none were
-  double moved = 0;     ///< bound on how far the structure has moved
-};
-
-/// Joins parts of a structure that are close together. If the result has another topology, more distant parts are
-/// joined, too. If that does not help, nothing is joined.
-Joined join(PlaneStructure& structure, double tolerance, const Context& context) {
-  const std::size_t planes = structure.surface.size();
-  double size = 0;
-  for (const PlaneStructure::Junction& junction : structure.junctions) size = std::max(size, length(junction.at));
-  // Fractions of the size. The caller may ask for a larger distance than the search would try.
-  constexpr double most_searched = 1e-4;
-  constexpr double most_asked = 1e-2;
-  const double most = std::max(most_searched * size, std::min(tolerance, most_asked * size));
-  constexpr double step = 8;
-  for (double distance = tolerance; distance > 0 && distance <= most; distance *= step) {
-    PlaneStructure joined = structure;
-    const double moved = join_close_junctions(joined, distance, context);
-    if (joined.junctions.size() == structure.junctions.size()) return {};
-    if (!is_division(joined, planes)) continue;
-    structure = std::move(joined);
-    return {distance, moved};
-  }
-  return {};
 }
 
 /// Returns a component with its diagram, or nothing if it is not convex. If joined faces do not form a convex
@@ -321,7 +239,7 @@ std::optional<ConvexBodies> convex_bodies(const MeshView& mesh, const SiteTable&
   for (const std::vector<std::uint32_t>& component : components(mesh, table)) {
     std::optional<ConvexBody> body = convex_body(mesh, table, sites, component, flat, context);
     if (!body) return std::nullopt;
-    const Joined joined = join(body->structure, join_factor * flat, context);
+    const JoinedJunctions joined = restore_degenerate(body->structure, join_factor * flat, context);
     out.flatness = std::max(out.flatness, body->faces.flatness);
     out.joined = std::max(out.joined, joined.distance);
     out.moved = std::max(out.moved, joined.moved);

@@ -33,7 +33,7 @@ struct ConvexBodies {
 /// Returns the diagrams of the bodies of a polyhedron, or nothing if one is not convex.
 ///
 /// Parts of a diagram within 8 times `flatness` are joined, at small angles also within 64 times
-/// (join_close_junctions()). The distance grows until the joined diagram has the right Euler number, to at most 1e-4 of
+/// (restore_degenerate()). The distance grows until the joined diagram has the right Euler number, to at most 1e-4 of
 /// the size. If joined faces do not form a convex polyhedron, the triangles of a convex body count as given.
 /// @param flatness  as for convex_faces(); rounding_of_coordinates() if not given.
 /// @throws Cancelled.
