@@ -62,19 +62,42 @@ void add_case(const std::string& name, const TriangleMesh& mesh,
       [mesh = turned(mesh), options](benchmark::State& state) { voronoi_case(state, mesh, options); });
 }
 
-/// The exact diagram of a convex solid.
-void convex_case(const std::string& name, const TriangleMesh& mesh) {
-  const auto run = [](benchmark::State& state, const TriangleMesh& of) {
+/// The exact diagram of a convex solid, and for comparison the one divided into cubes.
+void convex_case(const std::string& name, const TriangleMesh& mesh, bool also_cubes = true) {
+  const auto run = [](benchmark::State& state, const TriangleMesh& of, VoronoiMethod method) {
     VoronoiReport found;
-    const Times times = time_runs([&] { found = voronoi_complex(of, {.part = VoronoiPart::walls}).report; });
+    const VoronoiOptions options{.part = VoronoiPart::walls, .method = method, .resolution = 1};
+    const Times times = time_runs([&] { found = voronoi_complex(of, options).report; });
     report(state, times, static_cast<double>(found.faces));
     report_phases(state, found.phases);
-    if (!found.certified || !found.exact) return state.SkipWithError("not exact");
+    if (!found.certified) return state.SkipWithError("not certified");
+    if (found.exact != (method == VoronoiMethod::automatic)) return state.SkipWithError("another method");
     state.counters["triangles"] = static_cast<double>(of.triangles.size());
     state.counters["faces"] = static_cast<double>(found.faces);
   };
-  add("convex/" + name, [=](benchmark::State& state) { run(state, mesh); });
-  add("convex/" + name + "/turned", [run, mesh = turned(mesh)](benchmark::State& state) { run(state, mesh); });
+  for (const bool is_turned : {false, true}) {
+    const std::string full_name = "convex/" + name + (is_turned ? "/turned" : "");
+    const TriangleMesh placed = is_turned ? turned(mesh) : mesh;
+    add(full_name, [=](benchmark::State& state) { run(state, placed, VoronoiMethod::automatic); });
+    if (!also_cubes) continue;
+    add(full_name + "/cubes", [=](benchmark::State& state) { run(state, placed, VoronoiMethod::cubes); });
+  }
+}
+
+/// Double cone over a regular polygon. Many planes meet in its ends.
+TriangleMesh double_cone(std::uint32_t sides) {
+  TriangleMesh mesh;
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / sides;
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  mesh.vertices.push_back({0, 0, 1});
+  mesh.vertices.push_back({0, 0, -1});
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    mesh.triangles.push_back({k, (k + 1) % sides, sides});
+    mesh.triangles.push_back({(k + 1) % sides, k, sides + 1});
+  }
+  return mesh;
 }
 
 /// Medial axes from exact walls and from the grid, at one angle.
@@ -184,9 +207,10 @@ const bool registered = [] {
   for (const int sides : {16, 256}) {
     convex_case("cylinder-" + std::to_string(sides), make_cylinder({.sides = sides}));
   }
-  for (const int frequency : {4, 8, 16}) {
-    convex_case("sphere-" + std::to_string(frequency), make_sphere({.frequency = frequency}));
+  for (const int frequency : {4, 8, 16, 32}) {
+    convex_case("sphere-" + std::to_string(frequency), make_sphere({.frequency = frequency}), frequency == 4);
   }
+  convex_case("double-cone-1000", double_cone(1000), false);
   add_case("box", make_box());
   add_case("star", make_star());
   for (const int sides : {16, 64, 256}) {
