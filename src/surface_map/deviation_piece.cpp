@@ -22,14 +22,10 @@ constexpr std::size_t most_upper = 3;
 /// Greatest number of primitives for which a piece is divided where its closest site changes. If there are more, most
 /// parts of the piece would have several closest sites, too.
 constexpr std::size_t most_for_sites = 16;
-/// Rounding errors of positions, where the largest coordinate is about 1.
+/// Rounding errors of positions and of squares of distances, where the largest coordinate is about 1.
 constexpr double rounding = 1e-14;
-/// A piece is not divided at places that are closer to its corners than this.
-constexpr double small = 1e-9;
-/// Place on a side, as a share of its length, at which the site that is closest near the end is searched.
-constexpr double beside = 1e-4;
-/// Greatest number of pairs of sites that are examined for one side.
-constexpr int most_tries = 5;
+/// If the bounds of a piece with one closest site differ by at most this, its values count as linear.
+constexpr double straight = 1e-9;
 /// Factor that makes up for rounding where a limit of a search was computed.
 constexpr double slack = 1 + 1e-9;
 
@@ -41,32 +37,18 @@ double sum(const std::array<double, 3>& values) {
   return values[0] + values[1] + values[2];
 }
 
-bool is_small(const Vec3d& v) {
-  return squared_length(v) < small * small;
-}
-
-/// Returns the place between the ends of a segment, 0 to 1, where an affine function is 0. Returns nullopt if there is
-/// no such place, or the function is small at an end.
-/// @param values  of the function at the ends.
-std::optional<double> zero_between(const std::array<Vec3d, 2>& values) {
-  const Vec3d change = values[1] - values[0];
-  if (is_small(values[0]) || is_small(values[1]) || !(dot(values[0], values[1]) < 0)) return std::nullopt;
-  const double place = -dot(values[0], change) / squared_length(change);
-  return is_small(values[0] + change * place) ? std::optional(place) : std::nullopt;
-}
-
-/// Returns the place, 0 to 1, where a quadratic function changes its sign. Returns nullopt if the function is small at
-/// 0 or 1, or has the same sign at both.
-/// @param square  factor of the square.
-std::optional<double> sign_change(double at_0, double at_1, double square) {
-  if (at_0 > 0) return at_1 < 0 ? sign_change(-at_0, -at_1, -square) : std::nullopt;
-  if (!(at_0 < -small && at_1 > small)) return std::nullopt;
-  const double slope = at_1 - at_0 - square;
-  return -2 * at_0 / (slope + std::sqrt(std::max(slope * slope - 4 * square * at_0, 0.0)));
+double squared_distance_of_triangle(const std::array<Vec3d, 3>& corners) {
+  return squared_length(closest_point_on_triangle({}, corners));
 }
 
 std::array<double, 3> distances_from(const Vec3d& point, const std::array<Vec3d, 3>& corners) {
   return {length(corners[0] - point), length(corners[1] - point), length(corners[2] - point)};
+}
+
+/// Computes the means of values that change linearly.
+void set_means(DeviationPiece& piece) {
+  piece.is_round = false;
+  piece.mean_value = sum(piece.value) / 3;
 }
 
 /// Returns true if two triangles with a common side lie in one plane, and are a convex quadrilateral together.
@@ -84,32 +66,6 @@ bool are_convex(const std::array<Vec3d, 3>& p, std::size_t side, const Vec3d& ti
 }
 
 }  // namespace
-
-/// Position and bounds of a corner.
-struct DeviationBounds::Corner {
-  Vec3d position;
-  double value = 0;
-  double error = 0;
-};
-
-DeviationBounds::Corner DeviationBounds::between(const Corner& a, const Corner& b, double place) {
-  return {a.position + (b.position - a.position) * place, a.value + (b.value - a.value) * place,
-          a.error + (b.error - a.error) * place};
-}
-
-/// Returns a part of a piece.
-/// @param share  of the piece's area.
-DeviationPiece DeviationBounds::part_of(const DeviationPiece& piece, const std::array<Corner, 3>& corners,
-                                        double share) {
-  DeviationPiece out = piece;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.corners[k] = corners[k].position;
-    out.value[k] = corners[k].value;
-    out.error[k] = corners[k].error;
-  }
-  out.area = piece.area * share;
-  return out;
-}
 
 /// Values at the corners of a piece, linear in between.
 struct DeviationBounds::Linear {
@@ -138,11 +94,25 @@ double DeviationPiece::mean_error() const {
 /// If the piece is not sharp, the errors are distances from the centroid. Their mean square is a twelfth of the sum of
 /// those of the corners.
 double DeviationPiece::mean_square_error() const {
-  if (is_sharp) return mean_square(error);
+  if (is_sharp) return mean_square_of(error);
   return (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / 12;
 }
 
+double DeviationPiece::mean_square(double unit) const {
+  if (is_round) return round_square / unit / unit;
+  return mean_square_of({value[0] / unit, value[1] / unit, value[2] / unit});
+}
+
+std::pair<double, double> DeviationPiece::values() const {
+  const auto [low, high] = std::minmax({value[0], value[1], value[2]});
+  return is_round ? std::pair(std::min(low, inner), std::max(high, inner)) : std::pair(low, high);
+}
+
 std::pair<double, double> DeviationPiece::range() const {
+  if (is_round) {
+    const auto [low, high] = values();
+    return {low - error[0], high + error[0]};
+  }
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -152,7 +122,7 @@ std::pair<double, double> DeviationPiece::range() const {
   return {low, high};
 }
 
-double mean_square(const std::array<double, 3>& v) {
+double mean_square_of(const std::array<double, 3>& v) {
   const double all = sum(v);
   return (all * all + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 12;
 }
@@ -161,6 +131,7 @@ void set_around(DeviationPiece& piece, double deviation) {
   const Vec3d centroid = centroid_of(piece.corners);
   piece.value.fill(deviation);
   piece.error = distances_from(centroid, piece.corners);
+  set_means(piece);
 }
 
 DeviationBounds::DeviationBounds(const MeshView& mesh, const ClosestPointQuery* signs, const Context& context)
@@ -313,21 +284,39 @@ DeviationBounds::Linear DeviationBounds::lower_bound(const DeviationPiece& piece
   return best;
 }
 
-void DeviationBounds::set_values(DeviationPiece& piece, const Vec3d& centroid, const Linear& lower,
-                                 const Linear& upper) const {
+/// Sets values and errors.
+/// @param least  lower bound on all distances.
+void DeviationBounds::set_values(DeviationPiece& piece, const Vec3d& centroid, const Linear& lower, const Linear& upper,
+                                 double least) const {
   for (std::size_t k = 0; k < 3; ++k) {
     piece.value[k] = (upper.at[k] + lower.at[k]) / 2;
     piece.error[k] = std::max((upper.at[k] - lower.at[k]) / 2, 0.0);
   }
-  if (signs_ == nullptr) return;
+  if (signs_ != nullptr) set_sign(piece, centroid, lower, upper, least);
+  set_means(piece);
+}
+
+void DeviationBounds::set_sign(DeviationPiece& piece, const Vec3d& centroid, const Linear& lower, const Linear& upper,
+                               double least) const {
   const double at_centroid = piece.sign == 0 ? signs_->nearest(centroid).distance : piece.sign;
   const bool may_jump = signs_->sign_may_jump();
-  const bool is_away = std::min({lower.at[0], lower.at[1], lower.at[2]}) > 1e-14;
-  if (piece.sign == 0 && !is_away && !may_jump) return set_crossing(piece, centroid, upper, at_centroid);
+  if (piece.sign == 0 && !(least > 1e-14) && !may_jump && !is_one_sided(piece, lower, upper)) {
+    return set_crossing(piece, centroid, upper, at_centroid);
+  }
   // If signs may jump, halves of the piece may have another sign.
-  if (!may_jump) piece.sign = at_centroid < 0 ? -1 : 1;
+  if (!may_jump && least > 1e-14) piece.sign = at_centroid < 0 ? -1 : 1;
   if (!(at_centroid < 0)) return;
   for (double& value : piece.value) value = -value;
+}
+
+/// Returns true if the sign of the centroid holds wherever the lower bound is above 0. These points are connected. The
+/// distances of the others are at most the gap between the bounds, which is added to the errors.
+bool DeviationBounds::is_one_sided(DeviationPiece& piece, const Linear& lower, const Linear& upper) {
+  double gap = 0;
+  for (std::size_t k = 0; k < 3; ++k) gap = std::max(gap, upper.at[k] - lower.at[k]);
+  if (!(sum(lower.at) > 0 && gap <= straight)) return false;
+  for (double& error : piece.error) error += gap;
+  return true;
 }
 
 /// Sets the values of a piece on which the sign may change.
@@ -384,124 +373,6 @@ Vec3d DeviationBounds::offset_from(SiteId site, const Vec3d& point) const {
   return normal * (dot(away, normal) / squared_length(normal));
 }
 
-/// Returns true if the projection of a point onto the line of an edge lies on the edge. A vertex is always the
-/// projection.
-bool DeviationBounds::is_on(SiteId site, const Vec3d& point) const {
-  const std::array<std::int32_t, 3> v = sites_.vertices(site);
-  if (v[1] < 0) return true;
-  const Vec3d& first = mesh_.vertices[static_cast<std::size_t>(v[0])];
-  const Vec3d side = mesh_.vertices[static_cast<std::size_t>(v[1])] - first;
-  const double along = dot(point - first, side);
-  const double least = rounding * length(side);
-  return along >= -least && along <= squared_length(side) + least;
-}
-
-/// Returns true if a vertex or edge is closest to all points of a piece, up to rounding. Let q be the projections of
-/// points x of the piece. Each other primitive must lie behind the planes through q with normals x - q, or be further
-/// away by the bound of lower_bound(). For a vertex v, (v - q).(x - q) is an affine function of x. So if it is not
-/// above 0 at the corners, it is not above 0 in between.
-bool DeviationBounds::is_only(const DeviationPiece& piece, SiteId site, const Search& search) const {
-  std::array<Vec3d, 3> offset;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (!is_on(site, piece.corners[k])) return false;
-    offset[k] = offset_from(site, piece.corners[k]);
-  }
-  const auto is_behind = [&](const Vec3d& v) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (dot(v - (piece.corners[k] - offset[k]), offset[k]) > rounding * 0.1) return false;
-    }
-    return true;
-  };
-  return std::all_of(search.found.begin(), search.found.end(), [&](const NearestPrimitive& one) {
-    const Triangle v = primitive_vertices(mesh_, one.primitive);
-    if (std::all_of(v.begin(), v.end(), [&](std::uint32_t k) { return is_behind(mesh_.vertices[k]); })) return true;
-    const Vec3d away = search.centroid - one.point;
-    const double size = length(away);
-    if (!(size > 0)) return false;
-    const Vec3d normal = away / size;
-    const double front = front_of(one.primitive, normal, search.centroid);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (dot(normal, piece.corners[k] - search.centroid) - front < length(offset[k]) - rounding) return false;
-    }
-    return true;
-  });
-}
-
-/// Returns places on a segment, 0 to 1, where the closest site may change from one site to another. The segment may
-/// also cross a site there. For all sides of a piece, the same entry is on the same line or curve. Leaves out places
-/// that are close to an end.
-DeviationBounds::Places DeviationBounds::places_between(const std::array<Vec3d, 2>& ends,
-                                                        const std::array<SiteId, 2>& sites) const {
-  std::array<std::array<Vec3d, 2>, 2> offset;  // from each site, at each end
-  for (std::size_t s = 0; s < 2; ++s) {
-    for (std::size_t e = 0; e < 2; ++e) offset[s][e] = offset_from(sites[s], ends[e]);
-  }
-  // The projections onto a face and its edge, or an edge and its end, are the same where the closest site changes.
-  return {zero_between({offset[0][0] - offset[1][0], offset[0][1] - offset[1][1]}),
-          sign_change(squared_length(offset[0][0]) - squared_length(offset[1][0]),
-                      squared_length(offset[0][1]) - squared_length(offset[1][1]),
-                      squared_length(offset[0][1] - offset[0][0]) - squared_length(offset[1][1] - offset[1][0])),
-          zero_between(offset[0]), zero_between(offset[1])};
-}
-
-/// Finds a place on a side of a piece where the closest site changes, or the side crosses the mesh. Sets the cut there,
-/// and where the same line crosses another side. Returns false if no place is found.
-bool DeviationBounds::cut_across(const DeviationPiece& piece, std::size_t side, std::array<double, 3>& cut) const {
-  const auto ends_of = [&](std::size_t k) { return std::array{piece.corners[k], piece.corners[(k + 1) % 3]}; };
-  const std::array<Vec3d, 2> ends = ends_of(side);
-  const auto at = [&](double place) { return ends[0] + (ends[1] - ends[0]) * place; };
-  // Several sites may be closest to the ends, because earlier cuts ended there.
-  std::array<SiteId, 2> sites{bvh_.nearest(at(beside))->site, bvh_.nearest(at(1 - beside))->site};
-  double begin = 0;
-  double end = 1;
-  for (int tries = 0; tries < most_tries; ++tries) {
-    const Places places = places_between(ends, sites);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      if (!places[k]) continue;
-      const Vec3d there = at(*places[k]);
-      const std::array<double, 2> distances{length(offset_from(sites[0], there)), length(offset_from(sites[1], there))};
-      const double least = std::min(distances[0], distances[1]);
-      const bool is_change = std::abs(distances[0] - distances[1]) < small || least < small;
-      if (!is_change || bvh_.nearest(there)->distance < least - small) continue;
-      cut[side] = *places[k];
-      for (const std::size_t other : {(side + 1) % 3, (side + 2) % 3}) {
-        const std::optional<double> place = places_between(ends_of(other), sites)[k];
-        if (!place) continue;
-        cut[other] = *place;
-        break;
-      }
-      return true;
-    }
-    if (tries == 0 && sites[0] == sites[1]) return false;
-    // Between the ends, other sites are closest. The first of them is searched.
-    const double middle = begin + (end - begin) / 2;
-    const SiteId third = bvh_.nearest(at(middle))->site;
-    if (third == sites[0]) {
-      begin = middle;
-    } else {
-      end = middle;
-      sites[1] = third;
-    }
-  }
-  return false;
-}
-
-/// Returns places on the sides of a piece: it is to be divided through these. They are 0 at corner k and 1 at the next
-/// one; 0 means that the side is not divided. If possible, they are on a line on which the closest site changes.
-std::array<double, 3> DeviationBounds::cut_of(const DeviationPiece& piece) const {
-  std::array<double, 3> out{};
-  const std::array<double, 3> squared = squared_sides(piece.corners);
-  if (piece.may_cut) {
-    std::array<std::size_t, 3> sides{0, 1, 2};
-    std::sort(sides.begin(), sides.end(), [&](std::size_t a, std::size_t b) { return squared[a] > squared[b]; });
-    for (const std::size_t side : sides) {
-      if (cut_across(piece, side, out)) return out;
-    }
-  }
-  out[piece.side < 3 ? piece.side : longest_of(squared)] = 0.5;
-  return out;
-}
-
 /// Divides the side on which the distance bends most. There, the direction from the closest point changes most.
 void DeviationBounds::choose_bend(DeviationPiece& piece, const std::array<Vec3d, 3>& offsets) const {
   double most = piece.largest_error();
@@ -521,8 +392,14 @@ void DeviationBounds::choose_bend(DeviationPiece& piece, const std::array<Vec3d,
   }
 }
 
+RoundValues DeviationBounds::round_values(const DeviationPiece& piece) const {
+  std::array<Vec3d, 3> offsets;
+  for (std::size_t k = 0; k < 3; ++k) offsets[k] = offset_from(piece.site, piece.corners[k]);
+  return RoundValues(offsets);
+}
+
 /// Computes the bounds of a piece whose closest site is known. The distance is the length of an affine function, which
-/// is convex. So its values at the corners and its tangent at the centroid enclose it.
+/// is convex. So its values at the corners and its tangent at the centroid enclose it. If they differ, it is round.
 void DeviationBounds::set_by_site(DeviationPiece& piece) const {
   const Vec3d centroid = centroid_of(piece.corners);
   std::array<Vec3d, 3> offsets;
@@ -531,20 +408,37 @@ void DeviationBounds::set_by_site(DeviationPiece& piece) const {
   const double distance = length(middle);
   Linear lower;
   Linear upper;
-  double least = std::numeric_limits<double>::infinity();
+  double gap = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     lower.at[k] = distance > 0 ? dot(offsets[k], middle) / distance : 0;
     upper.at[k] = length(offsets[k]);
-    least = std::min(least, lower.at[k]);
+    gap = std::max(gap, upper.at[k] - lower.at[k]);
   }
-  // Rounding in is_only() changes a distance d by up to rounding / d.
-  const double error = rounding / std::max(least, std::sqrt(rounding));
+  const double least = std::sqrt(squared_distance_of_triangle(offsets));
+  // Rounding of the squares in divide_by_nearest() changes a distance d by up to rounding / d.
+  const double error = 2 * rounding / std::max(least, std::sqrt(rounding));
   for (std::size_t k = 0; k < 3; ++k) {
     lower.at[k] -= error;
     upper.at[k] += error;
   }
-  set_values(piece, centroid, lower, upper);
+  set_values(piece, centroid, lower, upper, least - error);
   choose_bend(piece, offsets);
+  // If the sign may change, only small pieces have narrow bounds.
+  if (gap > straight && (signs_ == nullptr || least > 2 * error)) set_round(piece, RoundValues(offsets), error);
+}
+
+void DeviationBounds::set_round(DeviationPiece& piece, const RoundValues& round, double error) {
+  if (!round.is_accurate()) return;
+  const RoundValues::Mean mean = round.mean();
+  const double all = error + round.value_error() + mean.error;
+  if (!(all < piece.largest_error())) return;
+  const double sign = piece.mean_value < 0 ? -1 : 1;
+  piece.is_round = true;
+  piece.error.fill(all);
+  for (std::size_t k = 0; k < 3; ++k) piece.value[k] = sign * round.at_corners()[k];
+  piece.mean_value = sign * mean.value;
+  piece.round_square = round.mean_square();
+  piece.inner = sign * round.lowest();
 }
 
 void DeviationBounds::sharpen(DeviationPiece& piece) const {
@@ -553,42 +447,111 @@ void DeviationBounds::sharpen(DeviationPiece& piece) const {
   Search search;
   const Linear upper = examine(piece, search);
   const Linear lower = lower_bound(piece, search, upper);
-  set_values(piece, search.centroid, lower, upper);
+  set_values(piece, search.centroid, lower, upper, std::min({lower.at[0], lower.at[1], lower.at[2]}));
   std::array<Vec3d, 3> offsets;
   for (std::size_t k = 0; k < 3; ++k) offsets[k] = piece.corners[k] - upper.closest[k];
   choose_bend(piece, offsets);
-  if (search.is_crowded || search.found.size() > most_for_sites || !(piece.largest_error() > rounding)) return;
-  const SiteId site = search.found[0].site;
-  if (sites_.site(site).kind != SiteKind::face && is_only(piece, site, search)) {
-    piece.site = site;
-    return set_by_site(piece);
-  }
-  piece.may_cut = true;
+  piece.may_cut = !search.is_crowded && search.found.size() <= most_for_sites && piece.largest_error() > rounding;
 }
 
-DeviationBounds::Parts DeviationBounds::parts(const DeviationPiece& piece) const {
-  const std::array<double, 3> cut = cut_of(piece);
-  // The piece is turned so that the first side is cut, and the last one if there are two cuts.
-  std::size_t side = 0;
-  while (!(cut[side] > 0) || cut[(side + 1) % 3] > 0) ++side;
-  std::array<Corner, 3> c;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t at = (side + k) % 3;
-    c[k] = {piece.corners[at], piece.value[at], piece.error[at]};
+/// Returns a primitive with its partner as one facet.
+Facet DeviationBounds::facet_of(std::uint32_t primitive) const {
+  std::array<std::uint32_t, 4> v{};
+  std::size_t count = 0;
+  const auto add = [&](std::uint32_t vertex) {
+    if (std::find(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(count), vertex) ==
+        v.begin() + static_cast<std::ptrdiff_t>(count)) {
+      v[count++] = vertex;
+    }
+  };
+  for (const std::uint32_t vertex : primitive_vertices(mesh_, primitive)) add(vertex);
+  const std::uint32_t partner = partner_of(primitive);
+  if (partner != primitive) {
+    // The other corner of the partner lies between the ends of the longest side.
+    const std::size_t side = longest_of(squared_sides(triangle_corners(mesh_, primitive)));
+    const Triangle& own = mesh_.triangles[primitive];
+    count = 0;
+    add(own[(side + 1) % 3]);
+    add(own[(side + 2) % 3]);
+    add(own[side]);
+    for (const std::uint32_t vertex : mesh_.triangles[partner]) add(vertex);
   }
-  const double first = cut[side];
-  const double last = cut[(side + 2) % 3];
-  const Corner on_first = between(c[0], c[1], first);
-  Parts out;
-  if (last > 0) {
-    const Corner on_last = between(c[2], c[0], last);
-    out.push_back(part_of(piece, {c[0], on_first, on_last}, first * (1 - last)));
-    out.push_back(part_of(piece, {on_first, c[1], c[2]}, 1 - first));
-    out.push_back(part_of(piece, {on_first, c[2], on_last}, first * last));
-  } else {
-    out.push_back(part_of(piece, {c[0], on_first, c[2]}, first));
-    out.push_back(part_of(piece, {on_first, c[1], c[2]}, 1 - first));
+  std::array<Vec3d, 4> corners;
+  std::array<SiteId, 4> vertices;
+  std::array<SiteId, 4> sides;
+  for (std::size_t k = 0; k < count; ++k) {
+    corners[k] = mesh_.vertices[v[k]];
+    vertices[k] = SiteId(v[k]);
+    if (count > 1) sides[k] = edge_between(v[k], v[(k + 1) % count]);
   }
+  const bool is_flat = primitive < mesh_.triangles.size() && count > 2;
+  const SiteId face = is_flat ? sites_.id({SiteKind::face, primitive}) : SiteId{};
+  const std::size_t side_count = count > 2 ? count : count - 1;
+  return make_facet(std::span(corners).first(count), std::span(vertices).first(count), std::span(sides).first(side_count),
+                    face);
+}
+
+SiteId DeviationBounds::edge_between(std::uint32_t a, std::uint32_t b) const {
+  const Segment wanted{std::min(a, b), std::max(a, b)};
+  const std::span<const Segment> edges = sites_.edges();
+  const auto at = std::lower_bound(edges.begin(), edges.end(), wanted);
+  if (at == edges.end() || *at != wanted) return {};
+  return sites_.id({SiteKind::edge, static_cast<std::uint32_t>(at - edges.begin())});
+}
+
+/// Appends the parts of a piece that have one closest site, and the remaining parts. Appends none if the whole piece
+/// remains.
+void DeviationBounds::add_regions(const DeviationPiece& piece, std::size_t most,
+                                  std::vector<DeviationPiece>& out) const {
+  Search search;
+  static_cast<void>(examine(piece, search));
+  if (search.is_crowded || search.found.size() > most_for_sites) return;
+  std::vector<Facet> facets;
+  for (const NearestPrimitive& one : search.found) {
+    if (!is_behind_partner(search, one)) facets.push_back(facet_of(one.primitive));
+  }
+  std::vector<NearestRegion> regions;
+  divide_by_nearest(piece.corners, facets, most, rounding, regions);
+  if (regions.size() == 1 && !regions[0].site.has_value()) return;
+  const Vec3d normal = cross(piece.corners[1] - piece.corners[0], piece.corners[2] - piece.corners[0]);
+  const double largest_value = std::max(std::abs(piece.range().first), std::abs(piece.range().second));
+  for (const NearestRegion& region : regions) {
+    const auto& corners = region.corners;
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      DeviationPiece part = piece;
+      part.corners = {corners[0], corners[k - 1], corners[k]};
+      part.area = piece.area * (dot(cross(corners[k - 1] - corners[0], corners[k] - corners[0]), normal) /
+                                squared_length(normal));
+      if (!(part.area > 0)) continue;
+      part.value.fill(0);
+      part.error.fill(largest_value);
+      part.site = region.site;
+      out.push_back(part);
+    }
+  }
+}
+
+/// Appends the halves of a piece.
+void DeviationBounds::add_halves(const DeviationPiece& piece, std::vector<DeviationPiece>& out) {
+  const std::size_t side = piece.side < 3 ? piece.side : longest_of(squared_sides(piece.corners));
+  const std::size_t next = (side + 1) % 3;
+  DeviationPiece half = piece;
+  half.area = piece.area / 2;
+  for (const auto& [changed, kept] : {std::pair(next, side), std::pair(side, next)}) {
+    half.corners = piece.corners;
+    half.value = piece.value;
+    half.error = piece.error;
+    half.corners[changed] = piece.corners[kept] + (piece.corners[changed] - piece.corners[kept]) * 0.5;
+    half.value[changed] = (piece.value[changed] + piece.value[kept]) / 2;
+    half.error[changed] = (piece.error[changed] + piece.error[kept]) / 2;
+    out.push_back(half);
+  }
+}
+
+std::vector<DeviationPiece> DeviationBounds::parts(const DeviationPiece& piece, std::size_t most) const {
+  std::vector<DeviationPiece> out;
+  if (piece.may_cut && most > least_parts) add_regions(piece, most, out);
+  if (out.empty()) add_halves(piece, out);
   for (DeviationPiece& part : out) sharpen(part);
   return out;
 }

@@ -1,20 +1,29 @@
-// Blum: percentiles of values that change linearly over triangles. SPDX-License-Identifier: Apache-2.0
+// Blum: percentiles of values over triangles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
 
 namespace blum::surface {
 
-/// Values at the corners of a triangle, in rising order. Between the corners, the value changes linearly.
+class RoundValues;
+
+/// Values over a triangle.
 struct LinearValue {
+  /// Values at the corners, in rising order. Between the corners, the value changes linearly. If there are round
+  /// values, all values are in this range.
   double lowest = 0;
   double middle = 0;
   double highest = 0;
   double weight = 0;  ///< above 0, proportional to the triangle's area
+  /// nullptr, or the values are `sign` times these distances, plus `shift`. Must outlive this object.
+  const RoundValues* round = nullptr;
+  double sign = 1;
+  double shift = 0;
 };
 
 /// Sorts the values of three corners.
@@ -23,15 +32,16 @@ struct LinearValue {
 /// Returns the fraction of a triangle's area on which its value is at most `value`.
 [[nodiscard]] double fraction_below(const LinearValue& triangle, double value);
 
-/// Returns, for each percentage, a bound on the value below which that percentage of the total weight lies. Bounds are
-/// at most `error`, or 1e-15 times the range of the values, from that value.
+/// Returns, for each percentage, a lower and an upper bound on the value below which that percentage of the total
+/// weight lies. If no errors of fractions intervene, the bounds differ by at most `error`, or 1e-15 times the range of
+/// the values.
 /// @param values    at least one.
 /// @param percents  above 0 and below 100.
-/// @param is_upper  true for upper bounds, false for lower bounds.
 /// @return          the same for any number of threads.
 /// @throws Cancelled.
-/// Cost: 30 ns per value.
-[[nodiscard]] std::vector<double> percentiles(std::span<const LinearValue> values, std::span<const double> percents,
-                                              double error, bool is_upper, const Context& context);
+/// Cost: 30 ns per value without round values.
+[[nodiscard]] std::vector<std::pair<double, double>> percentiles(std::span<const LinearValue> values,
+                                                                 std::span<const double> percents, double error,
+                                                                 const Context& context);
 
 }  // namespace blum::surface

@@ -32,7 +32,7 @@ constexpr std::size_t pieces_per_range = 64;
 /// Greatest number of pieces. This number takes about 150 gigabytes.
 constexpr std::size_t most_pieces = 1'000'000'000;
 /// Greatest number of pieces that one piece is divided into before the statistics are computed again.
-constexpr std::size_t most_per_piece = 64;
+constexpr std::size_t most_per_piece = 256;
 /// Number of pieces whose statistics take as long as the bounds of thousands of pieces.
 constexpr std::size_t many_pieces = 20'000;
 /// Number of searches for one closest point that take as long as sharpen().
@@ -41,6 +41,8 @@ constexpr std::size_t search_share = 7;
 constexpr std::size_t triangles_for_cut = 4;
 /// Greatest number of bounds for one piece and its parts.
 constexpr std::size_t least_per_piece = 4;
+
+using Bounds = std::pair<double, double>;
 
 /// Statistics of all pieces, in the units of the search.
 struct Statistics {
@@ -136,6 +138,14 @@ class DeviationSearch {
     piece.area = area;
   }
 
+  /// Extends the bounds of the smallest and the largest value by a value that occurs.
+  static void include(Statistics& out, double value, double error) {
+    const double low = value - error;
+    const double high = value + error;
+    out.smallest = {std::min(out.smallest.first, low), std::min(out.smallest.second, high)};
+    out.largest = {std::max(out.largest.first, low), std::max(out.largest.second, high)};
+  }
+
   [[nodiscard]] Statistics statistics() {
     Statistics out;
     LongSum mean, mean_error, square, square_error, magnitude;
@@ -143,21 +153,17 @@ class DeviationSearch {
     out.largest = {-HUGE_VAL, -HUGE_VAL};
     for (const DeviationPiece& piece : pieces_) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const double low = piece.value[k] - piece.error[k];
-        const double high = piece.value[k] + piece.error[k];
-        out.smallest = {std::min(out.smallest.first, low), std::min(out.smallest.second, high)};
-        out.largest = {std::max(out.largest.first, low), std::max(out.largest.second, high)};
+        include(out, piece.value[k], piece.error[k]);
       }
+      if (piece.is_round) include(out, piece.inner, piece.error[0]);
     }
     out.largest_magnitude = std::max(std::abs(out.smallest.first), std::abs(out.largest.second));
     const double unit = out.largest_magnitude > 0 ? out.largest_magnitude : 1;  // squares must not underflow
     for (const DeviationPiece& piece : pieces_) {
-      mean.add(piece.area * piece.mean_value());
+      mean.add(piece.area * piece.mean_value);
       mean_error.add(piece.area * piece.mean_error());
-      magnitude.add(piece.area * std::abs(piece.mean_value()));
-      std::array<double, 3> value{};
-      for (std::size_t k = 0; k < 3; ++k) value[k] = piece.value[k] / unit;
-      square.add(piece.area * surface::mean_square(value));
+      magnitude.add(piece.area * std::abs(piece.mean_value));
+      square.add(piece.area * piece.mean_square(unit));
       square_error.add(piece.area * piece.mean_square_error());
     }
     out.mean = mean.value() / area_;
@@ -168,22 +174,41 @@ class DeviationSearch {
     return out;
   }
 
-  /// Adds the bounds of percentiles. @param error  they may be this much wider than needed.
+  /// Adds the bounds of percentiles. @param error  they may be about this much wider than needed.
   void add_percentiles(Statistics& found, double error) const {
-    found.lower = percentiles_of(-1, error);
-    found.upper = percentiles_of(1, error);
+    double largest = 0;
+    for (const DeviationPiece& piece : pieces_) largest = std::max(largest, piece.largest_error());
+    const bool are_exact = largest <= error;
+    const std::vector<Bounds> low = percentiles_of(are_exact ? 0 : -1, error);
+    const std::vector<Bounds> high = are_exact ? low : percentiles_of(1, error);
+    found.lower.clear();
+    found.upper.clear();
+    for (std::size_t k = 0; k < low.size(); ++k) {
+      found.lower.push_back(low[k].first - (are_exact ? largest : 0));
+      found.upper.push_back(high[k].second + (are_exact ? largest : 0));
+    }
   }
 
-  /// Returns bounds on the percentiles: those of the values plus the errors times `side`, which is 1 or -1.
-  /// @param error  bounds may be this much wider than needed.
-  [[nodiscard]] std::vector<double> percentiles_of(double side, double error) const {
+  /// Returns bounds on the percentiles of the values plus the errors times `side`.
+  /// @param error  bounds may be this far apart.
+  [[nodiscard]] std::vector<Bounds> percentiles_of(double side, double error) const {
+    std::vector<surface::RoundValues> rounds;
+    rounds.reserve(pieces_.size());  // so that pointers stay valid
     std::vector<LinearValue> values;
     values.reserve(pieces_.size());
     for (const DeviationPiece& piece : pieces_) {
+      if (piece.is_round) {
+        rounds.push_back(bounds_->round_values(piece));
+        const double shift = side * piece.error[0];
+        const auto [low, high] = piece.values();
+        values.push_back({low + shift, low + shift, high + shift, piece.area, &rounds.back(),
+                          piece.inner < 0 ? -1.0 : 1.0, shift});
+        continue;
+      }
       const auto at = [&](std::size_t k) { return piece.value[k] + side * piece.error[k]; };
       values.push_back(surface::linear_value(at(0), at(1), at(2), piece.area));
     }
-    return surface::percentiles(values, SurfaceDeviation::percents, error, side > 0, context_);
+    return surface::percentiles(values, SurfaceDeviation::percents, error, context_);
   }
 
   /// Returns the largest error that is wanted.
@@ -227,7 +252,7 @@ class DeviationSearch {
     return out;
   }
 
-  using Ranges = std::vector<std::pair<double, double>>;
+  using Ranges = std::vector<Bounds>;
   static bool meets(const DeviationPiece& piece, const Ranges& ranges) {
     if (ranges.empty()) return false;
     const auto [low, high] = piece.range();
@@ -308,8 +333,8 @@ class DeviationSearch {
         const DeviationPiece before = now;
         bounds_->sharpen(now);
         if (now.mean_error() > before.mean_error()) {
-          now.value = before.value;
-          now.error = before.error;
+          now = before;
+          now.is_sharp = true;
         }
         ++spent;
       }
@@ -317,7 +342,7 @@ class DeviationSearch {
         out.push_back(now);
         continue;
       }
-      const DeviationBounds::Parts parts = bounds_->parts(now);
+      const std::vector<DeviationPiece> parts = bounds_->parts(now, most - spent);
       open.insert(open.end(), parts.begin(), parts.end());
       spent += parts.size();
     }
