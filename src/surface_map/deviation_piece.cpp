@@ -487,8 +487,8 @@ Facet DeviationBounds::facet_of(std::uint32_t primitive) const {
   const bool is_flat = primitive < mesh_.triangles.size() && count > 2;
   const SiteId face = is_flat ? sites_.id({SiteKind::face, primitive}) : SiteId{};
   const std::size_t side_count = count > 2 ? count : count - 1;
-  return make_facet(std::span(corners).first(count), std::span(vertices).first(count), std::span(sides).first(side_count),
-                    face);
+  return make_facet(std::span(corners).first(count), std::span(vertices).first(count),
+                    std::span(sides).first(side_count), face);
 }
 
 SiteId DeviationBounds::edge_between(std::uint32_t a, std::uint32_t b) const {
@@ -520,8 +520,8 @@ void DeviationBounds::add_regions(const DeviationPiece& piece, std::size_t most,
     for (std::size_t k = 2; k < corners.size(); ++k) {
       DeviationPiece part = piece;
       part.corners = {corners[0], corners[k - 1], corners[k]};
-      part.area = piece.area * (dot(cross(corners[k - 1] - corners[0], corners[k] - corners[0]), normal) /
-                                squared_length(normal));
+      part.area = piece.area *
+                  (dot(cross(corners[k - 1] - corners[0], corners[k] - corners[0]), normal) / squared_length(normal));
       if (!(part.area > 0)) continue;
       part.value.fill(0);
       part.error.fill(largest_value);

@@ -19,8 +19,9 @@
 
 namespace blum::surface {
 
-/// A part of a triangle of a surface. The deviation of each of its points x is at most error(x) from value(x). The error
-/// changes linearly between the corners. So does the value, unless `is_round`: then it is the distance from the site.
+/// A part of a triangle of a surface. The deviation of each of its points x is at most error(x) from value(x). The
+/// error changes linearly between the corners. So does the value, unless `is_round`: then it is the distance from the
+/// site.
 struct DeviationPiece {
   std::array<Vec3d, 3> corners{};
   std::array<double, 3> value{};
@@ -29,10 +30,10 @@ struct DeviationPiece {
   double mean_value = 0;
   double round_square = 0;  ///< mean square of the value if `is_round`
   double inner = 0;         ///< smallest magnitude of the value if `is_round`, with the sign of the values
-  std::int8_t sign = 0;           ///< sign of all deviations; 0: unknown, or both signs occur
-  std::uint8_t side = 3;          ///< side to divide, from corner `side` to the next one; 3: the longest
-  bool is_sharp = false;          ///< true if the bounds follow from several primitives of the mesh
-  bool may_cut = false;           ///< true if cuts where the closest site changes are better than halves
+  std::int8_t sign = 0;     ///< sign of all deviations; 0: unknown, or both signs occur
+  std::uint8_t side = 3;    ///< side to divide, from corner `side` to the next one; 3: the longest
+  bool is_sharp = false;    ///< true if the bounds follow from several primitives of the mesh
+  bool may_cut = false;     ///< true if cuts where the closest site changes are better than halves
   bool is_round = false;
   SiteId site;  ///< site of the mesh that is closest to all points of the piece; none(): several, or unknown
 

@@ -391,8 +391,8 @@ class NearestAtMean {
   std::span<const Facet> facets_;
   double tolerance_;
   Vec3d mean_;
-  double reach_ = 0;     ///< largest distance of a corner from the mean
-  double furthest_ = 0;  ///< largest distance of a corner from the site
+  double reach_ = 0;                ///< largest distance of a corner from the mean
+  double furthest_ = 0;             ///< largest distance of a corner from the site
   InlineList<Flat, 16> flats_;      ///< for each facet, the part that is closest to the mean
   InlineList<double, 16> squared_;  ///< squares of its distances
   std::size_t own_ = 0;             ///< the closest facet

@@ -35,7 +35,6 @@ class RoundValues {
   /// Returns a bound on the error of fractions.
   [[nodiscard]] double fraction_error() const { return fraction_error_; }
 
-
  private:
   /// Side of the triangle in its plane, seen from the point of the plane that is closest to the origin.
   struct Side {

@@ -201,8 +201,8 @@ class DeviationSearch {
         rounds.push_back(bounds_->round_values(piece));
         const double shift = side * piece.error[0];
         const auto [low, high] = piece.values();
-        values.push_back({low + shift, low + shift, high + shift, piece.area, &rounds.back(),
-                          piece.inner < 0 ? -1.0 : 1.0, shift});
+        values.push_back(
+            {low + shift, low + shift, high + shift, piece.area, &rounds.back(), piece.inner < 0 ? -1.0 : 1.0, shift});
         continue;
       }
       const auto at = [&](std::size_t k) { return piece.value[k] + side * piece.error[k]; };

@@ -53,7 +53,8 @@ struct Description<DeviationOptions> {
 };
 
 /// Statistics of the distances of all points of a surface from another mesh, weighted by area. The surface is divided
-/// into pieces, on which two linear functions enclose the distance. Statistics are those of the mean of both functions.
+/// into pieces. On pieces with one closest site, statistics are exact, except for rounding. On the others, two linear
+/// functions enclose the distance, and statistics are those of the mean of both.
 /// Members with `error` in their name are guaranteed bounds on errors, not estimates.
 struct SurfaceDeviation {
   static constexpr std::array<double, 7> percents{1, 5, 25, 50, 75, 95, 99};
@@ -102,8 +103,8 @@ struct Description<SurfaceDeviation> {
 /// @param other  any soup of triangles, segments and points.
 /// @return       the same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled.
-/// Cost: one search of the closest point for each triangle, and 2 to 10 us of one core for each piece. Flat parts that
-/// face flat parts take few pieces.
+/// Cost: one search of the closest point for each triangle, and 2 to 10 us of one core for each piece. If both meshes
+/// have few triangles, for example boxes, they take few pieces.
 /// Method: docs/theory/surface-maps.md.
 [[nodiscard]] SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other,
                                                  const DeviationOptions& options = {}, const Context& context = {});

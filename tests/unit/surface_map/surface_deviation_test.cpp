@@ -166,6 +166,41 @@ TEST(SurfaceDeviation, OfBoxesTakesFewPieces) {
   }
 }
 
+/// A box turned about a random axis through its middle, then moved.
+TriangleMesh turned_box(Random& random, const Vec3d& size, const Vec3d& offset) {
+  const auto unit = [](const Vec3d& v) { return v / length(v); };
+  const Vec3d x = unit(random.in_cube());
+  const Vec3d y = unit(cross(x, random.in_cube()));
+  const Vec3d z = cross(x, y);
+  TriangleMesh out = make_box({.size = size});
+  for (Vec3d& v : out.vertices) v = x * v.x + y * v.y + z * v.z + offset;
+  return out;
+}
+
+/// Two boxes have few parts with one closest site, wherever they are, and the statistics of these parts are exact.
+TEST(SurfaceDeviation, OfTurnedBoxesIsNearlyExact) {
+  Random random(11);
+  const auto size = [&] { return Vec3d{random.uniform(0.2, 2), random.uniform(0.2, 2), random.uniform(0.2, 2)}; };
+  for (int k = 0; k < 40; ++k) {
+    const double reach = k % 4 == 0 ? 0.05 : k % 4 == 1 ? 3 : 0.7;
+    const TriangleMesh first = turned_box(random, k % 4 == 2 ? Vec3d{3, 3, 3} : size(), {});
+    const TriangleMesh second = turned_box(random, size(), random.in_cube() * reach);
+    const SurfaceDeviation found = surface_deviation(first, second);
+    EXPECT_LT(found.pieces, 400U) << k;
+    const double error = std::max({found.mean_error, found.rms_error, found.percentile_error});
+    if (k % 4 != 1) {
+      EXPECT_LT(error, 2e-4) << k;
+    }
+    const Sampled reference = sampled(first, second, 60, SignMode::none);
+    expect_agreement(found, reference, "turned " + std::to_string(k));
+    // Means of samples are far closer than their bound.
+    EXPECT_NEAR(found.mean, reference.mean, 1e-3 * (1 + reference.mean) + found.mean_error) << k;
+    EXPECT_NEAR(found.rms, reference.rms, 1e-3 * (1 + reference.rms) + found.rms_error) << k;
+    const SurfaceDeviation with_sign = surface_deviation(first, second, {.sign = SignMode::automatic});
+    expect_agreement(with_sign, sampled(first, second, 30, SignMode::automatic), "signed " + std::to_string(k));
+  }
+}
+
 /// On this slope, the distance from the plane is evenly distributed from 0 to 1.
 TEST(SurfaceDeviation, OfASlope) {
   const TriangleMesh slope{{{0, 0, 0}, {2, 0, 1}, {2, 3, 1}, {0, 3, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
