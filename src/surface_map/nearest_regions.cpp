@@ -164,7 +164,6 @@ class NearestAtMean {
       flats_.push_back(here);
       const double squared = squared_length(here.offset(mean_));
       squared_.push_back(squared);
-      // Of a face and its edge at the same distance, the face comes first. So flat edges are no borders.
       if (squared < least) {
         least = squared;
         own_ = i;
@@ -272,8 +271,8 @@ class NearestAtMean {
     return false;
   }
 
-  /// Returns true if no point of the polygon is closer to a facet than to the site. The distance from the facet is at
-  /// least that from the plane of the facet, or from a vertex or edge that the whole facet is behind. The difference of
+  /// Returns true if no point of the polygon is closer to a facet than to the site. A lower bound of the
+  /// facet's distance is that of its plane, or of a vertex or line that the whole facet is behind. The difference of
   /// both squares is a quadratic function. It is not above 0 if its polar form is not above 0 for all pairs of corners.
   [[nodiscard]] bool is_further(const Facet& facet, const Flat& flat) const {
     const Offsets others = offsets_from(flat, polygon_);
