@@ -9,6 +9,7 @@
 #include <bit>
 
 #include "field/cpu/halving-inl.hpp"
+#include "hwy/cache_control.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
@@ -192,6 +193,13 @@ HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query) {
   return nearest_record(job, query, [](std::uint32_t) { return true; });
 }
 
+/// Records are prefetched this many clusters before their use.
+constexpr std::size_t clusters_ahead = 3;
+
+HWY_INLINE void prefetch_cluster(const Record* records) {
+  for (std::size_t k = 0; k < cluster_size; ++k) hwy::Prefetch(records + k);
+}
+
 /// Finds the clusters of all kinds that may contain a closest site of the tile's nodes. Returns their number.
 template <class Test>
 HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test, TileScratch::Impl& scratch) {
@@ -208,17 +216,19 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test,
   return total;
 }
 
-/// Appends the records of the found clusters that may be closest somewhere in the tile. They are sorted later.
-template <Kind kind, class Test>
-HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
-                               std::vector<detail::KeyedIndex>& out) {
+/// Calls use(index of a vector's first record, mask) for each vector of records of the found clusters. The mask has the
+/// records that may be closest somewhere in the tile.
+template <Kind kind, class Test, class Use>
+HWY_INLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
+                             Use use) {
   const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
-  for (const std::uint32_t cluster : clusters) {
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
     // Cancellation is checked here because at the centre of a sphere no site can be dropped.
     if (job.cancel.stop_requested()) return;
-    for (std::size_t first = cluster * cluster_size; first < (cluster + std::size_t{1}) * cluster_size;
-         first += lanes) {
+    const std::size_t begin = clusters[k] * cluster_size;
+    if (k + clusters_ahead < clusters.size()) prefetch_cluster(records + clusters[k + clusters_ahead] * cluster_size);
+    for (std::size_t first = begin; first < begin + cluster_size; first += lanes) {
       Columns columns;
       load_columns(records + first, columns);
       const M is_live = hn::RebindMask(d, hn::Ne(hn::BitCast(di, columns.column[15]), hn::Set(di, dead_record)));
@@ -227,12 +237,23 @@ HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std:
       if (hn::AllFalse(d, keep)) continue;
       V worst[1];
       test.run(block, keep, hn::Zero(di), worst, closest);
-      for (std::uint32_t kept = bits(hn::And(keep, hn::Le(worst[0], hn::Zero(d)))); kept != 0; kept &= kept - 1) {
-        const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(kept));
-        out.push_back({records[at].id, static_cast<std::uint32_t>(at)});
-      }
+      const M kept = hn::And(keep, hn::Le(worst[0], hn::Zero(d)));
+      if (!hn::AllFalse(d, kept)) use(first, kept);
     }
   }
+}
+
+/// Appends the records of the found clusters that may be closest somewhere in the tile. They are sorted later.
+template <Kind kind, class Test>
+HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
+                               std::vector<detail::KeyedIndex>& out) {
+  const Record* records = job.sites->kinds[kind].records.data();
+  find_records<kind>(test, job, clusters, [&](std::size_t first, M found) {
+    for (std::uint32_t kept = bits(found); kept != 0; kept &= kept - 1) {
+      const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(kept));
+      out.push_back({records[at].id, static_cast<std::uint32_t>(at)});
+    }
+  });
 }
 
 /// Copies the records that may be closest somewhere in a tile, in ascending order of site id.

@@ -88,6 +88,9 @@ struct ChildOffsets {
   }
 };
 
+/// Indices of candidates contain their kind in the bits from this one on.
+constexpr std::uint32_t kind_shift = 30;
+
 /// For each child of a box: the closest site to its centre found so far.
 struct ClosestAtCenters {
   static constexpr bool is_asked = true;
@@ -362,7 +365,8 @@ HWY_INLINE void halve_kind(const Test& test, const List& parent, ChildBits& out,
       continue;
     }
     V worst[8];
-    test.run(block, keep, hn::Or(here.index, hn::Set(di, static_cast<std::uint32_t>(kind) << 28)), worst, closest);
+    test.run(block, keep, hn::Or(here.index, hn::Set(di, static_cast<std::uint32_t>(kind) << kind_shift)), worst,
+             closest);
     for (std::size_t c = 0; c < 8; ++c) {
       out.child(c)[b] = static_cast<std::uint16_t>(kept & bits(hn::Le(worst[c], hn::Zero(d))));
     }

@@ -15,7 +15,9 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
 /// Returns the closest of the sites found for a child's centre, one per lane.
-HWY_INLINE Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
+/// @param record_of  callable: kind, index of a candidate -> its record.
+template <class RecordOf>
+HWY_INLINE Witness closest_candidate(const RecordOf& record_of, const ClosestAtCenters& closest, std::size_t child,
                                      const Vec3f& center) {
   alignas(64) std::array<std::uint32_t, lanes> index;
   const float squared = hn::GetLane(hn::MinOfLanes(d, closest.squared[child]));
@@ -23,8 +25,8 @@ HWY_INLINE Witness closest_candidate(const Candidates& candidates, const Closest
   const auto best = static_cast<std::size_t>(std::countr_zero(bits(hn::Eq(closest.squared[child], set(squared)))));
   Witness witness;
   if (squared >= hwy::HighestValue<float>()) return witness;
-  witness.kind = static_cast<Kind>(index[best] >> 28);
-  witness.record = &candidates[witness.kind][index[best] & 0x0fffffffU];
+  witness.kind = static_cast<Kind>(index[best] >> kind_shift);
+  witness.record = &record_of(witness.kind, index[best] & ((1U << kind_shift) - 1));
   if (!closest_on_record(witness.kind, *witness.record, center, witness.point)) {
     // The centre lies just outside of the prism, because of rounding. Its projection still lies on the face, within
     // rounding.
@@ -33,6 +35,12 @@ HWY_INLINE Witness closest_candidate(const Candidates& candidates, const Closest
   }
   witness.squared_distance = squared;
   return witness;
+}
+
+HWY_INLINE Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
+                                     const Vec3f& center) {
+  const auto record_of = [&](Kind kind, std::uint32_t index) -> const Record& { return candidates[kind][index]; };
+  return closest_candidate(record_of, closest, child, center);
 }
 
 /// Offers slivers (faces too flat for float32) one by one, because they are rare.
