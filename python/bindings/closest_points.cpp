@@ -102,14 +102,16 @@ void bind_closest_points(nb::module_& m) {
   nb::class_<ClosestPointQuery>(m, "ClosestPointQuery")
       .def(
           "__init__",
-          [](ClosestPointQuery* self, const MeshArrays& mesh, const nb::dict& given, int threads, nb::object progress) {
+          [](ClosestPointQuery* self, const MeshArrays& mesh, const nb::dict& given, int threads, nb::object progress,
+             std::size_t queries) {
             const MeshView view = mesh.view();
             const auto options = options_from<ClosestPointOptions>(given);
             new (self) ClosestPointQuery(run({threads, std::move(progress)}, [&](const Context& context) {
-              return ClosestPointQuery(view, options, context);
+              return queries > 0 ? ClosestPointQuery::for_many(view, queries, options, context)
+                                 : ClosestPointQuery(view, options, context);
             }));
           },
-          nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none())
+          nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none(), nb::arg("queries") = 0)
       .def(
           "nearest",
           [](const ClosestPointQuery& self, const PointsIn& points, int threads, nb::object progress) {

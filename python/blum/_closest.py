@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, IntArray, Integer, Real, float_rows, integer, number, points_and_shape
 from ._errors import InvalidOption
-from ._mesh import MeshLike, MeshOrVertices, as_mesh, moved_mesh
+from ._mesh import Mesh, MeshLike, MeshOrVertices, as_mesh, moved_mesh
 from ._methods import Rebuilt, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
@@ -105,14 +105,18 @@ class ClosestPointQuery(Rebuilt):
         progress: Progress = False,
         **options: Unpack[ClosestPointOptions],
     ) -> None:
-        self._mesh = as_mesh(mesh, triangles, weld=weld)
-        self._options = dict(options)
+        self._start(as_mesh(mesh, triangles, weld=weld), dict(options), threads, progress)
+
+    def _start(self, mesh: Mesh, options: dict[str, Any], threads: int, progress: Progress, queries: int = 0) -> None:
+        """Builds the query. If the number of queries is given, also what answers so many at once."""
+        self._mesh = mesh
+        self._options = options
         with reporting(progress) as report:
-            self._query = self._make(integer(threads, "threads"), report)
+            self._query = self._make(integer(threads, "threads"), report, queries)
         warn_all(self._query.warnings)
 
-    def _make(self, threads: int, report: ProgressCallback | None) -> _core.ClosestPointQuery:
-        return _core.ClosestPointQuery(self._mesh._arrays, self._options, threads, report)
+    def _make(self, threads: int, report: ProgressCallback | None, queries: int = 0) -> _core.ClosestPointQuery:
+        return _core.ClosestPointQuery(self._mesh._arrays, self._options, threads, report, queries)
 
     @cached_property
     def _query(self) -> _core.ClosestPointQuery:
@@ -292,8 +296,10 @@ def closest_points(
     >>> [round(distance, 2) for distance in found.distance.tolist()]
     [2.0, -0.8]
     """
-    query = ClosestPointQuery(mesh, weld=weld, threads=threads, progress=progress, **options)
-    return query(points, threads=threads, progress=progress)
+    rows, shape = points_and_shape(points, "points")
+    query = ClosestPointQuery.__new__(ClosestPointQuery)
+    query._start(as_mesh(mesh, weld=weld), dict(options), threads, progress, len(rows))
+    return query(rows.reshape((*shape, 3)), threads=threads, progress=progress)
 
 
 def winding_number(

@@ -145,6 +145,33 @@ struct ClosestPointQuery::Data {
     use_planned_triangles(context);
   }
 
+  /// Does what the constructor and prepare() do, at the same time.
+  static std::unique_ptr<Data> for_many(const MeshView& mesh, std::size_t queries, const ClosestPointOptions& options,
+                                        const Context& context) {
+    const bool is_worth_it = PointSearch::is_worth_building(queries, mesh.triangles.size());
+    if (!is_worth_it || thread_count(context) == 1) {
+      auto data = std::make_unique<Data>(mesh, options, context);
+      data->prepare(queries, context);
+      return data;
+    }
+    std::unique_ptr<Data> data;
+    std::unique_ptr<const PointSearch> search;
+    const auto run = [&](const WorkRange& task) {
+      if (task.begin == 0) {
+        data = std::make_unique<Data>(mesh, options, context);
+        return;
+      }
+      // Progress is reported by one of the tasks only.
+      const Context quiet{.threads = context.threads, .cancel = context.cancel};
+      search = std::make_unique<const PointSearch>(mesh, SiteTable(mesh, quiet), quiet);
+    };
+    parallel_for(context, 2, 1, "", run, Start::at_once);
+    // The search is that of the given triangles.
+    if (data->given_triangles_.empty()) data->search_ = std::move(search);
+    data->prepare(queries, context);
+    return data;
+  }
+
   void refit(std::span<const Vec3d> vertices, const Context& context) {
     if (vertices.size() != mesh.vertices.size()) {
       throw InvalidMesh("a query for a mesh with " + std::to_string(mesh.vertices.size()) +
@@ -255,8 +282,8 @@ struct ClosestPointQuery::Data {
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);
     if (is_prepared_) return queries >= PointSearch::fewest ? search_.get() : nullptr;
-    const bool is_worth_it =
-        search_ ? PointSearch::is_worth_using(queries, sites) : PointSearch::is_worth_building(queries, sites);
+    const bool is_worth_it = search_ ? PointSearch::is_worth_using(queries, sites)
+                                     : PointSearch::is_worth_building(queries, sites.face_count());
     if (is_worth_it && !search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
     return is_worth_it ? search_.get() : nullptr;
   }
@@ -279,7 +306,7 @@ struct ClosestPointQuery::Data {
   }
 
   void prepare(std::size_t queries, const Context& context) {
-    if (!PointSearch::is_worth_building(queries, sites)) return;
+    if (!PointSearch::is_worth_building(queries, sites.face_count())) return;
     if (!search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
     is_prepared_ = true;
   }
@@ -321,6 +348,15 @@ ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOpt
   validate(mesh);
   (void)checked_limit(options);
   data_ = std::make_unique<Data>(mesh, options, context);
+}
+
+ClosestPointQuery::ClosestPointQuery(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+
+ClosestPointQuery ClosestPointQuery::for_many(const MeshView& mesh, std::size_t queries,
+                                              const ClosestPointOptions& options, const Context& context) {
+  validate(mesh);
+  (void)checked_limit(options);
+  return ClosestPointQuery(Data::for_many(mesh, queries, options, context));
 }
 
 ClosestPointQuery::ClosestPointQuery(ClosestPointQuery&&) noexcept = default;
@@ -399,12 +435,16 @@ void ClosestPointQuery::for_each_nearest(std::span<const Vec3d> queries, Use use
 
 std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {
   std::vector<ClosestPoint> results = detail::large_list<ClosestPoint>(queries.size());
+  const auto first_face = static_cast<std::uint32_t>(data_->sites.size() - data_->sites.face_count());
   const auto put = [&](std::span<const FoundPoint> group) {
     for (std::size_t k = 0; k < group.size(); ++k) {
       if (k + ahead < group.size()) prefetch_to_write(&results[group[k + ahead].query]);
       const FoundPoint& found = group[k];
-      results[found.query] = {found.point, found.distance, found.site,
-                              found.site.has_value() ? data_->sites.triangle(found.site) : TriangleId::none()};
+      const SiteId site = found.site;
+      const TriangleId triangle = !site.has_value()          ? TriangleId::none()
+                                  : site.value >= first_face ? TriangleId(site.value - first_face)
+                                                             : data_->sites.triangle(site);
+      results[found.query] = {found.point, found.distance, site, triangle};
     }
   };
   for_each_nearest(queries, put, context);
@@ -458,7 +498,7 @@ NearPrimitives ClosestPointQuery::nearest_primitives(std::span<const Vec3d> quer
 
 std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,
                                          const ClosestPointOptions& options, const Context& context) {
-  return ClosestPointQuery(mesh, options, context).nearest(queries, context);
+  return ClosestPointQuery::for_many(mesh, queries.size(), options, context).nearest(queries, context);
 }
 
 std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found) {

@@ -1,6 +1,7 @@
 #include "field/point_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "blum/core/inline_list.hpp"
@@ -14,21 +15,19 @@ constexpr std::size_t queries_per_batch = std::size_t{1} << 23;
 
 }  // namespace
 
-bool PointSearch::is_worth_building(std::size_t queries, const SiteTable& sites) {
-  return queries >= 4096 && queries >= sites.face_count();
+bool PointSearch::is_worth_building(std::size_t queries, std::size_t faces) {
+  return queries >= 4096 && queries >= faces;
 }
 
 bool PointSearch::is_worth_using(std::size_t queries, const SiteTable& sites) {
   return queries >= fewest && queries >= sites.face_count() / 2;
 }
 
-bool PointSearch::project(const Vec3d& query, const cpu::FoundSite& found, NearestSite& nearest) const {
-  if (!found.site.has_value() || !engine_.is_in_frame(query)) return false;
-  const double margin = engine_.margin();
-  if (!projection_.project(found.site, query, margin, nearest)) return false;
+bool PointSearch::is_certain(const cpu::FoundSite& found, NearestSite& nearest) const {
+  if (!nearest.site.has_value()) return false;
   if (!found.other.has_value()) return true;
   NearestSite other;
-  if (!projection_.project(found.other, query, margin, other)) return false;
+  if (!projection_.project(found.other, found.at, engine_.margin(), other)) return false;
   const auto key = [](const NearestSite& site) { return std::pair(site.distance, site.site); };
   if (key(other) < key(nearest)) nearest = other;
   return true;
@@ -48,17 +47,21 @@ void PointSearch::nearest(std::span<const Vec3d> queries, double max_distance, c
                           FunctionRef<void(std::span<const Answer>)> receive) const {
   for (std::size_t first = 0; first < queries.size(); first += queries_per_batch) {
     const auto batch = queries.subspan(first, std::min(queries_per_batch, queries.size() - first));
-    engine_.for_each_group(batch, context, [&](std::span<const cpu::FoundSite> group) {
-      for (const cpu::FoundSite& one : group) {
-        if (one.site.has_value()) projection_.prefetch(one.site);
+    engine_.for_each_group(batch, context, [&](const cpu::FoundGroup& group) {
+      constexpr std::size_t most = cpu::PointEngine::most_per_group;
+      std::array<SiteId, most> sites;
+      std::array<NearestSite, most> nearest;
+      for (std::size_t k = 0; k < group.size(); ++k) {
+        sites[k] = engine_.is_in_frame(group.at[k]) ? group.known_site(group.site[k]) : SiteId::none();
       }
-      InlineList<Answer, cpu::PointEngine::most_per_group> answers;
-      for (const cpu::FoundSite& one : group) {
+      projection_.project(std::span(sites).first(group.size()), group.at, engine_.margin(), nearest);
+      InlineList<Answer, most> answers;
+      for (std::size_t k = 0; k < group.size(); ++k) {
         Answer& answer = answers.emplace_back();
-        answer.query = first + one.query;
-        answer.at = one.at;
-        if (!project(one.at, one, answer.nearest)) {
-          answer.nearest = search(one.at, one, max_distance, bvh).value_or(NearestSite{});
+        answer = {first + group.order[k].index, group.at[k], nearest[k]};
+        const bool is_single = nearest[k].site.has_value() && group.other[k] == cpu::dead_record;
+        if (!is_single && !is_certain(group[k], answer.nearest)) {
+          answer.nearest = search(answer.at, group[k], max_distance, bvh).value_or(NearestSite{});
         } else if (answer.nearest.distance > max_distance) {
           answer.nearest.site = SiteId::none();
         }

@@ -28,7 +28,7 @@ class PointSearch {
   static constexpr std::size_t fewest = 1024;
   /// Returns true if it pays to build a PointSearch for this many queries. There must be at least 4096, and at least as
   /// many as the mesh has faces (docs/performance.md).
-  [[nodiscard]] static bool is_worth_building(std::size_t queries, const SiteTable& sites);
+  [[nodiscard]] static bool is_worth_building(std::size_t queries, std::size_t faces);
   /// Returns true if it pays to use an existing PointSearch for this many queries.
   [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);
 
@@ -47,9 +47,9 @@ class PointSearch {
                FunctionRef<void(std::span<const Answer>)> receive) const;
 
  private:
-  /// Computes the answer in double precision from the sites that the kernels found. Returns false if the answer is
-  /// uncertain.
-  [[nodiscard]] bool project(const Vec3d& query, const cpu::FoundSite& found, NearestSite& nearest) const;
+  /// Returns true if a query's answer is certain. If the kernels found a second site, it takes part.
+  /// @param nearest  the closest point on the first site, in double precision; no site if it is uncertain.
+  [[nodiscard]] bool is_certain(const cpu::FoundSite& found, NearestSite& nearest) const;
   /// Searches the Bvh. The kernels' distance limits the search.
   [[nodiscard]] std::optional<NearestSite> search(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
                                                   const Bvh& bvh) const;

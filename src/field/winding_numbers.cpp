@@ -80,7 +80,7 @@ std::vector<double> winding_numbers(const MeshView& mesh, std::span<const Vec3d>
   std::vector<double> values(points.size());
   const bool is_refined =
       winding.is_piecewise_constant() || (winding.has_short_boundary() && max_error >= WindingNumber::refined_error);
-  if (is_refined && PointSearch::is_worth_building(points.size(), sites)) {
+  if (is_refined && PointSearch::is_worth_building(points.size(), sites.face_count())) {
     const Bvh bvh(surface, sites, context);
     const NumbersTogether together(winding, bvh.bounds(), max_error);
     const PointSearch search(surface, sites, context);

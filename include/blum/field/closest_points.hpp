@@ -86,6 +86,12 @@ class ClosestPointQuery {
   /// unsigned. It takes longer if winding numbers are needed.
   explicit ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options = {},
                              const Context& context = {});
+  /// Does what the constructor and prepare_for_many() do. With several threads this takes less time, because both
+  /// structures are built at the same time.
+  /// @param queries  approximate number of queries in all batches together.
+  /// @throws as the constructor.
+  [[nodiscard]] static ClosestPointQuery for_many(const MeshView& mesh, std::size_t queries,
+                                                  const ClosestPointOptions& options = {}, const Context& context = {});
   ClosestPointQuery(ClosestPointQuery&&) noexcept;
   ClosestPointQuery& operator=(ClosestPointQuery&&) noexcept;
   ~ClosestPointQuery();
@@ -184,6 +190,7 @@ class ClosestPointQuery {
 
  private:
   struct Data;
+  explicit ClosestPointQuery(std::unique_ptr<Data> data);
   std::unique_ptr<Data> data_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "blum/core/context.hpp"
 #include "blum/core/ids.hpp"
@@ -26,9 +27,6 @@ class SiteProjection {
   SiteProjection& operator=(SiteProjection&&) noexcept;
   ~SiteProjection();
 
-  /// Loads data of a site into the cache, for a later call of project().
-  void prefetch(SiteId site) const;
-
   /// Finds the closest point of a site, if the query is certainly in the site's domain. The domain is the set of points
   /// whose projection lies on the open site, and not on a site that touches it. The query must be at least `margin`
   /// away from all planes that bound the domain.
@@ -40,6 +38,13 @@ class SiteProjection {
   ///                if this is uncertain, for example for faces without a usable plane.
   /// Cost: about 15 ns; for a vertex, 5 ns for each edge at the vertex.
   [[nodiscard]] bool project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const;
+
+  /// Does the same for many queries. Results are those of the other function, bit for bit.
+  /// @param sites  one for each query. Queries without a site are left out.
+  /// @param found  one for each query. Entries without a closest point get no site.
+  /// Cost: half that of the other function if most sites are faces.
+  void project(std::span<const SiteId> sites, std::span<const Vec3d> queries, double margin,
+               std::span<NearestSite> found) const;
 
  private:
   struct Data;

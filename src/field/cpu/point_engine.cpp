@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t grain = std::size_t{1} << 13;
 /// Queries are scattered in memory, so they are prefetched this many queries before their use.
 constexpr std::size_t ahead = 40;
+constexpr std::size_t most_records = std::size_t{1} << 30;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Bound on the error of a distance in single precision, in the normalised frame.
 constexpr double slack = 2e-6;
@@ -37,10 +38,6 @@ Vec3d clamped(const Vec3d& p, const Box3& box) {
 void prefetch(const Vec3d& query) {
   hwy::Prefetch(&query.x);
   hwy::Prefetch(&query.z);  // the end of the query may be in the next cache line
-}
-
-SiteId known_site(std::uint32_t record) {
-  return record == dead_record ? SiteId::none() : SiteId(record);
 }
 
 /// Returns a grid of two nodes per side. Its box is the mesh's box, widened on each side by a quarter of the longest
@@ -150,7 +147,8 @@ PointEngine::PointEngine(const MeshView& mesh, const SiteTable& sites, const Con
   frame_ = kernels::make_normal_frame(bounds, grid);
   if (frame_.fault != NormalFrame::Fault::none || !is_finite(box_.lower) || !is_finite(box_.upper)) return;
   placed_.build(mesh, sites, adjacency, frame_, context);
-  is_usable_ = true;
+  // The kernels use some bits of an index for the kind of the site.
+  is_usable_ = mesh.vertices.size() <= most_records && sites.edge_count() <= most_records;
 }
 
 double PointEngine::margin() const {
@@ -205,7 +203,6 @@ struct PointEngine::Worker {
   std::vector<Vec3d> queries;  ///< in the order of the points
   MortonPoints points;
   PointResults results;
-  std::vector<FoundSite> group;
 
   void make_room(std::size_t count) {
     if (results.squared.size() >= count) return;
@@ -243,14 +240,17 @@ double PointEngine::at_most(const Vec3d& query, const FoundSite& found) const {
 }
 
 void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& context,
-                                 FunctionRef<void(std::span<const FoundSite>)> use) const {
+                                 FunctionRef<void(const FoundGroup&)> use) const {
   if (!is_usable_) {
     parallel_for(context, queries.size(), most_per_group, "closest points", [&](const WorkRange& range) {
-      std::vector<FoundSite> group;
-      for (std::size_t k = range.begin; k < range.end; ++k) {
-        group.push_back({queries[k], static_cast<std::uint32_t>(k), SiteId::none(), SiteId::none(), far_away});
-      }
-      use(group);
+      std::array<detail::KeyedIndex, most_per_group> order;
+      std::array<std::uint32_t, most_per_group> site;
+      std::array<float, most_per_group> squared;
+      const std::size_t count = range.end - range.begin;
+      for (std::size_t k = 0; k < count; ++k) order[k] = {0, static_cast<std::uint32_t>(range.begin + k)};
+      site.fill(dead_record);
+      squared.fill(far_away);
+      use({queries.subspan(range.begin, count), order, site, site, squared});
     });
     return;
   }
@@ -270,13 +270,10 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
     compute_point_cell(own, {0, cell.size(), cell.level, cell.center, cell.half}, mine.scratch);
     if (context.cancel.stop_requested()) return;
     for (std::size_t begin = 0; begin < cell.size(); begin += most_per_group) {
-      const std::size_t end = std::min(begin + most_per_group, cell.size());
-      mine.group.resize(end - begin);
-      for (std::size_t k = begin; k < end; ++k) {
-        mine.group[k - begin] = {mine.queries[k], mine.order[k].index, known_site(mine.results.site[k]),
-                                 known_site(mine.results.other[k]), mine.results.squared[k]};
-      }
-      use(mine.group);
+      const std::size_t count = std::min(most_per_group, cell.size() - begin);
+      use({std::span(mine.queries).subspan(begin, count), std::span(mine.order).subspan(begin, count),
+           mine.results.site.span().subspan(begin, count), mine.results.other.span().subspan(begin, count),
+           mine.results.squared.span().subspan(begin, count)});
     }
   };
   parallel_for(context, ordered.cells.size(), 1, "closest points", compute, Start::at_once);

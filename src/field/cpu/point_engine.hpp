@@ -9,6 +9,7 @@
 #include "blum/core/context.hpp"
 #include "blum/core/function_ref.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/core/radix_sort.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/cpu/adjacency.hpp"
@@ -28,6 +29,23 @@ struct FoundSite {
   float squared = 0;
 };
 
+/// Results for queries that lie close together. All members have one entry for each query.
+struct FoundGroup {
+  std::span<const Vec3d> at;
+  std::span<const detail::KeyedIndex> order;  ///< with the indices of the queries
+  std::span<const std::uint32_t> site, other;
+  std::span<const float> squared;
+
+  [[nodiscard]] std::size_t size() const { return at.size(); }
+  [[nodiscard]] FoundSite operator[](std::size_t k) const {
+    return {at[k], order[k].index, known_site(site[k]), known_site(other[k]), squared[k]};
+  }
+  /// Converts entries of `site` and `other`.
+  [[nodiscard]] static SiteId known_site(std::uint32_t record) {
+    return record == dead_record ? SiteId::none() : SiteId(record);
+  }
+};
+
 /// Finds the closest sites of many points at once. Points are sorted so that neighbours follow each other. Sites are
 /// culled for groups of points, as for the tiles of a field, so that the groups share work. The engine computes in
 /// single precision. Callers must confirm each result in double precision, so that their results do not depend on this
@@ -42,12 +60,12 @@ class PointEngine {
   /// Largest number of queries in a group. The data of a group fit in the L1 cache.
   static constexpr std::size_t most_per_group = 256;
 
-  /// Calls use(results) for groups of queries that lie close together. Calls are made on many threads at once. Each
+  /// Calls use(group) for groups of queries that lie close together. Calls are made on many threads at once. Each
   /// query is in exactly one group.
   /// @param queries  finite; fewer than 2^32.
   /// @throws Cancelled.
   void for_each_group(std::span<const Vec3d> queries, const Context& context,
-                      FunctionRef<void(std::span<const FoundSite>)> use) const;
+                      FunctionRef<void(const FoundGroup&)> use) const;
 
   /// Returns true if the query lies in the engine's box, so that its result is not that of another point.
   [[nodiscard]] bool is_in_frame(const Vec3d& query) const { return box_.contains(query); }

@@ -242,16 +242,8 @@ bool Sides::is_inside(const Vec3d& query, const NearestSite& nearest) const {
   return known ? *known : winding_->decide(query, nearest.distance).is_inside;
 }
 
-std::optional<bool> Sides::is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {
-  if (method_ == Method::none) return false;
-  // Outside of the mesh's box the side is known. The closest site could mislead there: far away, rounding may choose a
-  // wrong site, whose normal faces away.
-  const bool is_beyond = min(query, bounds_.lower) != bounds_.lower || max(query, bounds_.upper) != bounds_.upper;
-  if (method_ == Method::crossings && is_beyond) return level_ < 0;
-  if (method_ == Method::sums) return std::nullopt;
-  const bool is_behind = normals_->is_inside(query, nearest.point, nearest.site);
-  if (method_ == Method::pseudonormals || !winding_) return is_behind;
-  const std::uint32_t patch = patch_[nearest.site.value];
+std::optional<bool> Sides::is_inside_by_patch(const Vec3d& query, SiteId site, bool is_behind) const {
+  const std::uint32_t patch = patch_[site.value];
   if (patch != no_patch) return in_front_[patch] + (is_behind ? 1 : 0) > level_;
   if (level_ == 0) return std::nullopt;
   return winding_->estimate(query, 0.25).value > level_ + 0.5;

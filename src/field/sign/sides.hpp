@@ -37,7 +37,17 @@ class Sides {
 
   /// Returns the same if the closest site decides it. Otherwise returns nullopt, and the caller must decide: inside if
   /// the query's own winding number is above 1/2.
-  [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const;
+  [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {
+    if (method_ == Method::none) return false;
+    // Outside of the mesh's box the side is known. The closest site could mislead there: far away, rounding may choose
+    // a wrong site, whose normal faces away.
+    const bool is_beyond = min(query, bounds_.lower) != bounds_.lower || max(query, bounds_.upper) != bounds_.upper;
+    if (method_ == Method::crossings && is_beyond) return level_ < 0;
+    if (method_ == Method::sums) return std::nullopt;
+    const bool is_behind = normals_->is_inside(query, nearest.point, nearest.site);
+    if (method_ == Method::pseudonormals || !winding_) return is_behind;
+    return is_inside_by_patch(query, nearest.site, is_behind);
+  }
   /// Loads data of a site into the cache, for a later call of is_inside_by_site().
   void prefetch([[maybe_unused]] SiteId site) const {
 #if defined(__GNUC__)
@@ -55,6 +65,8 @@ class Sides {
   [[nodiscard]] std::size_t open_site_count() const;
 
  private:
+  /// Does the same for a query whose closest site is known to face away from it, or towards it.
+  [[nodiscard]] std::optional<bool> is_inside_by_patch(const Vec3d& query, SiteId site, bool is_behind) const;
   void find_patches(const MeshView& mesh, const SiteTable& sites, const Bvh& bvh, const Context& context);
 
   Method method_;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "blum/core/huge_pages.hpp"
 #include "blum/core/parallel.hpp"
 #include "geometry/box_scale.hpp"
+#include "geometry/distance/face_batch.hpp"
 #include "geometry/distance/site_feet.hpp"
 #include "geometry/distance/triangle_frame.hpp"
 
@@ -52,6 +54,13 @@ struct SiteProjection::Data {
   [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;
+  [[nodiscard]] bool find(SiteId site, const Vec3d& query, double margin, NearestSite& found) const;
+
+  [[nodiscard]] std::size_t first_face() const { return positions.size() + edges.size(); }
+  /// Loads data of a site into the cache.
+  void prefetch(SiteId site) const;
+  /// Loads the positions of an edge or vertex into the cache. Its data should be there.
+  void prefetch_positions(SiteId site) const;
 };
 
 SiteProjection::Data::Data(const MeshView& mesh, const SiteTable& sites, const Context& context)
@@ -138,35 +147,82 @@ SiteProjection::SiteProjection(SiteProjection&&) noexcept = default;
 SiteProjection& SiteProjection::operator=(SiteProjection&&) noexcept = default;
 SiteProjection::~SiteProjection() = default;
 
-void SiteProjection::prefetch([[maybe_unused]] SiteId site) const {
+void SiteProjection::Data::prefetch([[maybe_unused]] SiteId site) const {
 #if defined(__GNUC__)
-  const Data& data = *data_;
-  const std::size_t vertices = data.positions.size();
-  const std::size_t borders = vertices + data.edges.size();
-  if (site.value >= borders) {
-    const TriangleFrame& frame = data.faces[site.value - borders];
+  if (site.value >= first_face()) {
+    const TriangleFrame& frame = faces[site.value - first_face()];
     __builtin_prefetch(&frame);
     __builtin_prefetch(&frame.apex);  // its end is in another cache line
   } else {
-    const void* const start = site.value < vertices ? static_cast<const void*>(&data.first[site.value])
-                                                    : static_cast<const void*>(&data.edges[site.value - vertices]);
+    const std::size_t vertices = positions.size();
+    const void* const start = site.value < vertices ? static_cast<const void*>(&first[site.value])
+                                                    : static_cast<const void*>(&edges[site.value - vertices]);
     __builtin_prefetch(start);
   }
 #endif
 }
 
-bool SiteProjection::project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const {
-  const Data& data = *data_;
-  const Vec3d q = query * data.scale;
-  margin *= data.scale;
-  const std::size_t vertices = data.positions.size();
-  const std::size_t borders = vertices + data.edges.size();
+void SiteProjection::Data::prefetch_positions([[maybe_unused]] SiteId site) const {
+#if defined(__GNUC__)
+  if (site.value < positions.size()) return __builtin_prefetch(&positions[site.value]);
+  const Edge& edge = edges[site.value - positions.size()];
+  for (const std::uint32_t v : edge.ends) __builtin_prefetch(&positions[v]);
+  for (const std::uint32_t v : edge.apex) __builtin_prefetch(&positions[v]);
+#endif
+}
+
+bool SiteProjection::Data::find(SiteId site, const Vec3d& query, double margin, NearestSite& found) const {
+  const Vec3d q = query * scale;
+  const std::size_t vertices = positions.size();
+  margin *= scale;
   Foot foot;
-  const bool is_found = site.value < vertices  ? data.find_on_vertex(site.value, q, margin, foot)
-                        : site.value < borders ? data.find_on_edge(site.value - vertices, q, margin, foot)
-                                               : data.find_on_face(site.value - borders, q, margin, foot);
-  if (is_found) found = {foot.point * data.unscale, foot.distance * data.unscale, site};
+  const bool is_found = site.value < vertices       ? find_on_vertex(site.value, q, margin, foot)
+                        : site.value < first_face() ? find_on_edge(site.value - vertices, q, margin, foot)
+                                                    : find_on_face(site.value - first_face(), q, margin, foot);
+  if (is_found) found = {foot.point * unscale, foot.distance * unscale, site};
   return is_found;
+}
+
+bool SiteProjection::project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const {
+  return data_->find(site, query, margin, found);
+}
+
+void SiteProjection::project(std::span<const SiteId> sites, std::span<const Vec3d> queries, double margin,
+                             std::span<NearestSite> found) const {
+  const Data& data = *data_;
+  for (const SiteId site : sites) {
+    if (site.has_value()) data.prefetch(site);
+  }
+  FaceBatch batch;
+  batch.clear();
+  FaceBatchFeet feet;
+  std::array<std::size_t, FaceBatch::most> query_of;
+  std::size_t count = 0;
+  std::vector<std::size_t> others;  // queries on edges and vertices, which wait for their data
+  const auto flush = [&] {
+    find_feet(batch, count, margin * data.scale, feet);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3d point{feet.point[0][k], feet.point[1][k], feet.point[2][k]};
+      const SiteId site = feet.is_inside[k] != 0 ? sites[query_of[k]] : SiteId::none();
+      found[query_of[k]] = {point * data.unscale, std::sqrt(feet.squared[k]) * data.unscale, site};
+    }
+    count = 0;
+  };
+  const std::size_t first_face = data.first_face();
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    if (sites[k].has_value() && sites[k].value >= first_face) {
+      batch.set(count, queries[k] * data.scale, data.faces[sites[k].value - first_face]);
+      query_of[count++] = k;
+      if (count == FaceBatch::most) flush();
+    } else {
+      found[k].site = SiteId::none();
+      if (!sites[k].has_value()) continue;
+      data.prefetch_positions(sites[k]);
+      others.push_back(k);
+    }
+  }
+  flush();
+  for (const std::size_t k : others) (void)data.find(sites[k], queries[k], margin, found[k]);
 }
 
 }  // namespace blum
