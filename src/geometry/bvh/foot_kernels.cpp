@@ -24,8 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::HWY_NAMESPACE {
 namespace {
 
-/// Queries that one loop computes. The compiler makes vectors of them.
-constexpr std::size_t step = 8;
+constexpr std::size_t step = FaceBatch::step;
 
 void find_feet(const FaceBatch& in, std::size_t count, double margin, FaceBatchFeet& out) {
   for (std::size_t first = 0; first < count; first += step) {

@@ -12,16 +12,12 @@ namespace blum {
 /// Queries, each with the frame of its own triangle, as a structure of arrays.
 struct alignas(64) FaceBatch {
   static constexpr std::size_t most = 64;
+  static constexpr std::size_t step = 8;  ///< number of queries that are computed together
   using Column = std::array<double, most>;
 
   std::array<Column, 3> query, base, u, v;
   Column length, altitude, apex;
 
-  /// Initialises all queries.
-  void clear() {
-    for (std::size_t axis = 0; axis < 3; ++axis) query[axis] = base[axis] = u[axis] = v[axis] = Column{};
-    length = altitude = apex = Column{};
-  }
   void set(std::size_t k, const Vec3d& q, const TriangleFrame& frame) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       query[axis][k] = q[axis];
@@ -33,6 +29,13 @@ struct alignas(64) FaceBatch {
     altitude[k] = frame.altitude;
     apex[k] = frame.apex;
   }
+  /// Copies query k to another place.
+  void repeat(std::size_t k, std::size_t to) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::array<Column, 3>* const vector : {&query, &base, &u, &v}) (*vector)[axis][to] = (*vector)[axis][k];
+    }
+    for (Column* const column : {&length, &altitude, &apex}) (*column)[to] = (*column)[k];
+  }
 };
 
 /// Foot of each query of a batch on its triangle's plane.
@@ -43,7 +46,7 @@ struct alignas(64) FaceBatchFeet {
 };
 
 /// Computes the first feet of a batch. Each result has the bits of FaceFoot. Flat triangles contain no foot.
-/// @param count  is rounded up to whole vectors, so the following queries must be initialised.
+/// @param count  a multiple of FaceBatch::step.
 void find_feet(const FaceBatch& batch, std::size_t count, double margin, FaceBatchFeet& out);
 
 }  // namespace blum

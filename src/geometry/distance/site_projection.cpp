@@ -194,13 +194,15 @@ void SiteProjection::project(std::span<const SiteId> sites, std::span<const Vec3
     if (site.has_value()) data.prefetch(site);
   }
   FaceBatch batch;
-  batch.clear();
   FaceBatchFeet feet;
   std::array<std::size_t, FaceBatch::most> query_of;
   std::size_t count = 0;
   std::vector<std::size_t> others;  // queries on edges and vertices, which wait for their data
   const auto flush = [&] {
-    find_feet(batch, count, margin * data.scale, feet);
+    // Whole vectors are computed, so the last query is repeated.
+    std::size_t end = count;
+    for (; end % FaceBatch::step != 0; ++end) batch.repeat(count - 1, end);
+    find_feet(batch, end, margin * data.scale, feet);
     for (std::size_t k = 0; k < count; ++k) {
       const Vec3d point{feet.point[0][k], feet.point[1][k], feet.point[2][k]};
       const SiteId site = feet.is_inside[k] != 0 ? sites[query_of[k]] : SiteId::none();

@@ -306,6 +306,38 @@ TEST(ClosestPoints, DependOnNeitherThreadsNorNeighbours) {
   }
 }
 
+/// Both structures are built at the same time. Shells that face the wrong way are reversed meanwhile.
+TEST(ClosestPoints, AreTheSameIfAllIsBuiltAtTheSameTime) {
+  TriangleMesh inverted = make_organic({.frequency = 10});
+  reverse_triangles(inverted);
+  for (const TriangleMesh& mesh : {make_organic({.frequency = 10}), inverted}) {
+    const std::vector<Vec3d> places = test::places_around(mesh, 9000, 5);
+    const ClosestPointQuery expected(mesh);
+    for (const int threads : {1, 2, 4}) {
+      const Context context{.threads = threads};
+      const ClosestPointQuery query = ClosestPointQuery::for_many(mesh, places.size(), {}, context);
+      EXPECT_EQ(query.sign_reason(), expected.sign_reason());
+      const std::vector<ClosestPoint> found = query.nearest(places, context);
+      const std::vector<ClosestPoint> in_one_call = closest_points(mesh, places, {}, context);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const ClosestPoint alone = expected.nearest(places[k]);
+        ASSERT_EQ(found[k].point, alone.point);
+        ASSERT_EQ(found[k].distance, alone.distance);
+        ASSERT_EQ(found[k].site, alone.site);
+        ASSERT_EQ(found[k].triangle, alone.triangle);
+        ASSERT_EQ(in_one_call[k].distance, alone.distance);
+      }
+    }
+  }
+  EXPECT_THROW((void)ClosestPointQuery::for_many(TriangleMesh{}, 9000), InvalidMesh);
+  const TriangleMesh sphere = make_sphere({.frequency = 4});
+  EXPECT_THROW((void)ClosestPointQuery::for_many(sphere, 9000, {.max_distance = -1.0}), InvalidOption);
+  TriangleMesh open = sphere;
+  open.triangles.pop_back();
+  const ClosestPointOptions normals{.sign = SignMode::normals};
+  EXPECT_THROW((void)ClosestPointQuery::for_many(open, 9000, normals, {.threads = 2}), InvalidMesh);
+}
+
 /// Few queries are answered by the hierarchy, many queries are answered together. Signs come from normals or winding
 /// numbers.
 TEST(ClosestPoints, AreVisitedOnceEachWithTheSameAnswer) {

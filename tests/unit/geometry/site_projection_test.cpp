@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
@@ -62,6 +63,40 @@ TEST(SiteProjection, IsNoneOutsideOfTheDomainAndNextToItsBorder) {
   EXPECT_TRUE(projection.project(face, {2, 0.1, 0.3}, margin, found));
   EXPECT_FALSE(projection.project(face, {2, 0.1, 0.4995}, margin, found));
   EXPECT_FALSE(projection.project(face, {2, 0.1, 0.6}, margin, found));
+}
+
+/// Batches have any number of faces, edges, vertices and queries without a site, in any order.
+TEST(SiteProjection, GivesTheSameForManyQueriesTogether) {
+  const TriangleMesh mesh = make_organic({.frequency = 6});
+  const SiteTable sites(mesh);
+  const Bvh bvh(mesh, sites);
+  const SiteProjection projection(mesh, sites);
+  const Box3 box = bounds(mesh);
+  const double margin = 1e-3 * box.diagonal();
+  Random random(2);
+  std::size_t certain = 0;
+  std::size_t uncertain = 0;
+  for (const std::size_t count : {0U, 1U, 7U, 8U, 63U, 64U, 65U, 700U}) {
+    std::vector<SiteId> asked(count);
+    std::vector<Vec3d> queries(count);
+    std::vector<NearestSite> found(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      queries[k] = box.center() + random.in_ball() * box.diagonal();
+      asked[k] = k % 10 == 3 ? SiteId::none() : bvh.nearest(queries[k])->site;
+    }
+    projection.project(asked, queries, margin, found);
+    for (std::size_t k = 0; k < count; ++k) {
+      NearestSite alone;
+      const bool is_certain = asked[k].has_value() && projection.project(asked[k], queries[k], margin, alone);
+      ASSERT_EQ(found[k].site, is_certain ? asked[k] : SiteId::none());
+      if (asked[k].has_value()) ++(is_certain ? certain : uncertain);
+      if (!is_certain) continue;
+      ASSERT_EQ(found[k].point, alone.point);
+      ASSERT_EQ(found[k].distance, alone.distance);
+    }
+  }
+  EXPECT_GT(certain, 500U);
+  EXPECT_GT(uncertain, 20U);  // next to a border
 }
 
 /// Edges with three triangles and triangles without a plane have no known domain.
