@@ -193,10 +193,10 @@ struct LeafPattern {
 };
 
 /// Evaluates candidates at the nodes of one pass. Offers each of them to the derived class, which keeps the winners.
-template <class Winners, bool with_sides, class Nodes = LatticeNodes>
+template <class Winners, bool with_sides>
 struct LeafEvaluation {
-  static constexpr std::size_t vectors = Nodes::vectors;
-  Nodes nodes;
+  static constexpr std::size_t vectors = LatticeNodes::vectors;
+  LatticeNodes nodes;
 
   HWY_INLINE void offer(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
     static_cast<Winners*>(this)->take(k, inside, candidate, candidate_id, candidate_side);
@@ -279,18 +279,18 @@ struct LeafEvaluation {
 
  private:
   friend Winners;
-  explicit LeafEvaluation(const Nodes& of_pass) : nodes(of_pass) {}
+  explicit LeafEvaluation(const LatticeNodes& of_pass) : nodes(of_pass) {}
 };
 
 /// Closest candidates of one pass found so far, in registers.
-template <bool with_sides, class Nodes = LatticeNodes>
-struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes> {
-  static constexpr std::size_t vectors = Nodes::vectors;
+template <bool with_sides>
+struct LeafPass : LeafEvaluation<LeafPass<with_sides>, with_sides> {
+  static constexpr std::size_t vectors = LatticeNodes::vectors;
   V squared[vectors];
   V id[vectors];
   V side[vectors];
 
-  explicit LeafPass(const Nodes& of_pass) : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>(of_pass) {
+  explicit LeafPass(const LatticeNodes& of_pass) : LeafEvaluation<LeafPass<with_sides>, with_sides>(of_pass) {
     for (std::size_t k = 0; k < vectors; ++k) {
       squared[k] = set(hwy::HighestValue<float>());
       id[k] = hn::BitCast(d, hn::Set(di, dead_record));

@@ -18,7 +18,7 @@ constexpr std::size_t most_clusters = 8000;
 /// If there are more clusters, or more candidates, per point than this, each point is left to a search of its own.
 constexpr std::size_t clusters_per_point = 64;
 constexpr std::size_t candidates_per_point = 256;
-/// Points with at most this many candidates are not divided further.
+/// Points with at most this many candidates are not divided further, and all of the candidates are evaluated.
 constexpr std::size_t few_candidates = 32;
 /// Two distances are equal within rounding if they differ by at most this, in the normalised frame.
 constexpr float tie = 2e-6F;
@@ -80,8 +80,8 @@ struct PointPass {
     const V slack = set(-plane_slack);
     for (std::size_t k = 0; k < count; ++k) {
       const Vec from = nodes.at[k] - position;
-      V inside = dot_and(from, plane[0], slack);
-      for (int j = 1; j < 4; ++j) inside = hn::And(inside, dot_and(from, plane[j], slack));
+      V inside = dot_plus(from, plane[0], slack);
+      for (int j = 1; j < 4; ++j) inside = hn::And(inside, dot_plus(from, plane[j], slack));
       offer(k, inside, dot(from, from), number);
     }
   }
@@ -126,13 +126,14 @@ struct PointPass {
   }
 
  private:
-  static HWY_INLINE V dot_and(const Vec& a, const Vec& b, V rest) {
+  /// Returns a . b + rest.
+  static HWY_INLINE V dot_plus(const Vec& a, const Vec& b, V rest) {
     return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::MulAdd(a.x, b.x, rest)));
   }
 };
 
 /// The closest candidate, the second-closest candidate, and the distance of the third-closest one, for a vector of
-/// points. Squared distances are rounded down as in keys, and `slack` is added to get upper bounds.
+/// points. Squared distances are those of keys, which are rounded down.
 struct ClosestThree {
   V squared, second, third;
   VI site, second_site;
