@@ -4,8 +4,7 @@
   results.py check DIR NAME -- COMMAND...   run a command as one check, which passes if the command exits with 0
   results.py junit DIR NAME FILE [INNER]    count the tests of a JUnit file (ctest, vitest); no tests is a failure. The
                                             tests of INNER/X.xml replace a test pytest.X of ctest. A skipped one counts
-                                            as failed, unless it lacks the data folder or a CUDA device, or is an
-                                            expected failure (strict: pytest fails if it passes)
+                                            as failed, unless it lacks the data folder or a CUDA device
   results.py fail DIR NAME REASON           count one failure
   results.py summary DIR                    list failures and skips; last line `N passed, N failed[, N skipped]`
 
@@ -65,8 +64,6 @@ def outcome(case: ElementTree.Element, label: str, complete: bool) -> tuple[str,
         return "failed", f"{label} (did not run)"
     if data_present() and WANTS_DATA.search(text):
         return "failed", f"{label} (skipped for want of data, though the data folder is there)"
-    if skip is not None and skip.get("type") == "pytest.xfail":
-        return "skipped", f"{label} (expected failure: {skip.get('message')})"
     if complete and not WANTS_DATA.search(text) and not WANTS_DEVICE.search(text):
         return "failed", f"{label} (skipped: {text.strip()})"
     return "skipped", label

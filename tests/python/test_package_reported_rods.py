@@ -203,9 +203,8 @@ def test_the_axis_of_a_wire_is_its_middle(name):
         assert abs(np.linalg.norm(steps, axis=1).sum() - length) <= slack
 
 
-# Two ends are 1.65 and 1.7 diameters short, because contracted strips do not grow back far enough.
-SHORT = pytest.mark.xfail(strict=True, reason="an end is more than 1.5 diameters short")
-SEEDS = [pytest.param(seed, marks=SHORT) if seed in (11, 28) else seed for seed in range(40)]
+# With the last ten, contractions of short edges shortened strips.
+SEEDS = [*range(40), 57, 77, 80, 107, 143, 169, 213, 231, 299, 319]
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "blum/core/gather.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
+#include "blum/geometry/closest_point.hpp"
 #include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
 
@@ -44,12 +46,17 @@ std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const Incidence& incid
 
 /// Height of a triangle, in voxels, up to which its corners count as lying on a line.
 constexpr double sliver = 0.1;
+/// Greatest radius of thin parts, in voxels.
+constexpr double thin_part = 4;
+/// Greatest distance by which contractions may shorten a curve or strip at its end, as a share of the radius there.
+constexpr double most_shortened = 0.25;
 
 class ShortEdges {
  public:
   ShortEdges(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
              const ShortLengths& lengths, const Context& context)
       : lists_(lists, incidence, surface, 1),
+        shortened_(lists.vertices.size(), 0),
         scratch_(static_cast<std::size_t>(thread_count(context))),
         voxel_(voxel),
         lengths_(lengths),
@@ -77,7 +84,7 @@ class ShortEdges {
           [&](std::size_t k, const ContractionStep& step) {
             if (step.is_gone) return;
             if (step.contraction) {
-              lists_.contract(step.contraction->from, step.contraction->to);
+              contract(*step.contraction);
               return;
             }
             left.push_back(short_[k]);
@@ -186,15 +193,62 @@ class ShortEdges {
     // vertices. If the ranks are equal, the vertex with two footprints stays.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);
-    if (!lists_.may_contract(from, to, scratch)) {
+    if (shortens(from, to) || !lists_.may_contract(from, to, scratch)) {
       std::swap(from, to);
-      if (is_at_corner(from, to) || !lists_.may_contract(from, to, scratch)) return step;
+      if (is_at_corner(from, to) || shortens(from, to) || !lists_.may_contract(from, to, scratch)) return step;
     }
     step.contraction = {from, to};
     return step;
   }
 
+  void contract(const Contraction& step) {
+    if (are_on_strip(step.from, step.to)) {
+      double& shortened = shortened_[step.to];
+      shortened = std::max(shortened, shortened_[step.from] + uncovered_by(step.from, step.to));
+    }
+    lists_.contract(step.from, step.to);
+  }
+
+  // ---- Ends of curves and strips ----
+
+  /// Returns true if two vertices belong to a curve or strip of a thin part: to no sheet with vertices inside.
+  [[nodiscard]] bool are_on_strip(std::uint32_t a, std::uint32_t b) const { return is_on_strip(a) && is_on_strip(b); }
+  [[nodiscard]] bool is_on_strip(std::uint32_t v) const {
+    bool is_strip = lists_.rank(v) > 0 && lists_.radius(v) <= thin_part * voxel_;
+    lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+      is_strip = is_strip && lists_.rank(p) > 0 && lists_.rank(q) > 0;
+    });
+    return is_strip;
+  }
+  /// Returns the distance of a vertex from the edges that would meet at `to` if the vertex were contracted to it. This
+  /// distance is small between two neighbours on a line, but not at the end of a strip.
+  [[nodiscard]] double uncovered_by(std::uint32_t from, std::uint32_t to) const {
+    const Vec3d& at = lists_.position(from);
+    const Vec3d& end = lists_.position(to);
+    double least = squared_length(at - end);
+    const auto look = [&](std::uint32_t other) {
+      if (other == from || other == to) return;
+      least = std::min(least, squared_length(at - closest_point_on_segment(at, end, lists_.position(other))));
+    };
+    for (const std::uint32_t v : {from, to}) {
+      lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+        look(p);
+        look(q);
+      });
+      lists_.cells().for_each_edge(v, [&](std::uint32_t, std::uint32_t other) { look(other); });
+    }
+    return std::sqrt(least);
+  }
+  /// Returns true if a contraction, together with those before it, would shorten a curve or strip too much at its end.
+  [[nodiscard]] bool shortens(std::uint32_t from, std::uint32_t to) const {
+    if (!are_on_strip(from, to)) return false;
+    const double most = most_shortened * std::max(lists_.radius(from), lists_.radius(to));
+    return shortened_[from] + uncovered_by(from, to) > most;
+  }
+
   ShrinkingLists lists_;
+  /// For each vertex: sum of uncovered_by() along the chain of contractions to it for which the sum is largest.
+  std::vector<double> shortened_;
   std::vector<LinkScratch> scratch_;  ///< memory of each thread
   double voxel_;
   ShortLengths lengths_;
