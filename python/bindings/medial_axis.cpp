@@ -83,8 +83,8 @@ void bind_axis(nb::module_& m) {
 using VerifyAxis = FunctionRef<Certificate(const Complex& axis, const MedialClaims& claims, const Context& context)>;
 
 /// Runs certified_axes() at one angle, starting from an existing axis of all angles. Returns (complex, deviation,
-/// report, certificate, mismatches, warnings). The deviation bounds the distance from the axis with all vertices. It is
-/// None if the complex has all vertices.
+/// fitted, report, certificate, mismatches, warnings). The deviation bounds the distance from the axis with all
+/// vertices. It is None if the complex has all vertices.
 /// @param mesh, medial  input and options of the axis, to compute it again on a moved grid; nullptr for an image.
 nb::tuple certified(const MedialAxis& first, const MeshView* mesh, const MedialAxisOptions& medial, VerifyAxis verify,
                     const CertifiedAxisOptions& options, int threads, nb::object progress) {
@@ -101,8 +101,8 @@ nb::tuple certified(const MedialAxis& first, const MeshView* mesh, const MedialA
   CertifiedAxis& axis = made.axes.front();
   std::vector<Warning>& warnings = made.warnings;
   warnings.insert(warnings.end(), axis.warnings.begin(), axis.warnings.end());
-  return nb::make_tuple(std::move(axis.axis.axis), axis.metadata.deviation, result_of(made.report),
-                        result_of(axis.certificate), made.mismatches, result_of(warnings));
+  return nb::make_tuple(std::move(axis.axis.axis), axis.metadata.deviation, axis.metadata.fitted,
+                        result_of(made.report), result_of(axis.certificate), made.mismatches, result_of(warnings));
 }
 
 void bind_certified(nb::module_& m) {

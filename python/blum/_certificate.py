@@ -45,6 +45,7 @@ class Claim:
     deviation: float | None = None  #: Deviation from the axis with all vertices, mesh units.
     #: Image: iterations of the smooth surface of its voxels. None: the surface of their boxes.
     smooth: int | None = None
+    fitted: bool = False  #: True if its borders were fitted to the surface.
 
 
 class ShapeVerifier:
@@ -145,6 +146,7 @@ def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
         "spacing": claim.spacing,
         "deviation": claim.deviation,
         "smooth": claim.smooth,
+        "fitted": claim.fitted,
     }
 
 

@@ -97,7 +97,7 @@ class MedialAxis(Rebuilt):
         """
         angle = number(theta, "theta")
         cut = self._core.fitted if fit else self._core.simplify
-        return MedialComplex._of(cut(angle), EVERYTHING, self._origin_at(angle))
+        return MedialComplex._of(cut(angle), EVERYTHING, replace(self._origin_at(angle), fitted=fit))
 
     def _origin_at(self, angle: float) -> Origin:
         return _origin_of(self._origin, self.report, angle)
@@ -158,7 +158,7 @@ class MedialAxis(Rebuilt):
                 made = _core.certified_axis_of_mesh(
                     self._core, of_mesh, shape._arrays, self._options, angle, most, count, report
                 )
-        core, deviation, of_grid, certificate, mismatches, stated = made
+        core, deviation, fitted, of_grid, certificate, mismatches, stated = made
         warn_all(stated)
         if mismatches:
             text = "NOT certified: " + "; ".join(mismatches)
@@ -166,7 +166,7 @@ class MedialAxis(Rebuilt):
                 raise NotCertified(text)
             warn(text, "not-certified")
         found = MedialComplex._of(
-            core, EVERYTHING, replace(_origin_of(self._origin, of_grid, angle), deviation=deviation)
+            core, EVERYTHING, replace(_origin_of(self._origin, of_grid, angle), deviation=deviation, fitted=fitted)
         )
         found.__dict__["certificate"] = certificate
         return found

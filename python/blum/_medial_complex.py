@@ -64,6 +64,7 @@ class Origin:
     source: str = ""
     weld: float | None = None
     smooth: int | None = None
+    fitted: bool = False
     site_ids: str = "features"
     version: str = ""  #: Version of the Blum that wrote the file from which the complex was read.
 
@@ -466,6 +467,7 @@ def claim_of(axis: MedialComplex) -> Claim:
         origin.spacing,
         origin.deviation,
         origin.smooth,
+        origin.fitted,
     )
 
 

@@ -36,7 +36,9 @@ struct Allowances {
   double noise = 0;     ///< degrees: walls at a smaller angle count as one
   bool of_voxels = false;
 
-  static constexpr double steep = 80;  ///< degrees
+  static constexpr double steep = 80;      ///< degrees
+  static constexpr double opposite = 150;  ///< degrees: walls at this angle are on opposite sides of a thin part
+  static constexpr double of_thin = 3;     ///< radii: ends in thin parts are at most 1.5 diameters short
 
   /// Returns true if the axis must contain points with two footprints at this distance from each other and this
   /// separation angle. Between close walls, only steep angles are more than roughness. Between close voxels, no angle
@@ -54,6 +56,10 @@ struct Allowances {
   [[nodiscard]] double missing_at(double radius) const {
     return of_voxels ? missing : std::min(missing, std::max(radius / 2, 2 * voxel));
   }
+  /// Returns how far the centre of a ball of this radius, between opposite walls of a thin part, may be from the axis.
+  [[nodiscard]] double missing_in_thin(double radius) const { return std::max(of_thin * radius, rounding); }
+  /// Returns the largest radius of thin parts: there, missing_in_thin() is below missing_at().
+  [[nodiscard]] double thin() const { return of_voxels ? 0 : 2 * voxel / of_thin; }
 
  private:
   [[nodiscard]] double limited(double length, double share, double size) const {

@@ -87,30 +87,34 @@ double distance_to_middle(const Vec3d& p, const TouchingBall& ball) {
 BallDraws::BallDraws(const SolidOracle& solid, std::size_t count, std::function<std::optional<Start>(std::size_t)> draw)
     : solid_(solid), draw_(std::move(draw)), list_(count), locks_(count / per_lock + 1) {}
 
-BallDraws::Known* BallDraws::shrunk(std::size_t k, double floor) const {
+bool BallDraws::draw(std::size_t k) const {
   Shrinking& from = list_[k];
   if (!from.is_drawn) {
-    if (const std::optional<Start> start = draw_(k)) {
-      from.body = start->body;
-      from.next.emplace(solid_, start->body, start->point, solid_.closest_point(start->point, start->body), 0);
-    }
+    from.start = draw_(k);
+    if (from.start) from.first = solid_.closest_point(from.start->point, from.start->body);
     from.is_drawn = true;
   }
+  return from.start.has_value();
+}
+
+BallDraws::Known* BallDraws::shrunk(std::size_t k, double floor) const {
+  Shrinking& from = list_[k];
+  if (!from.next) from.next.emplace(solid_, from.start->body, from.start->point, from.first, 0);
   const auto end =
       std::find_if(from.balls.begin(), from.balls.end(), [&](const Known& known) { return known.ball.angle < floor; });
   if (end != from.balls.end()) return end == from.balls.begin() ? nullptr : &*std::prev(end);
   TouchingBall ball;
-  while (from.next && from.next->shrink(solid_, floor, ball)) from.balls.push_back({ball, {}, {}});
+  while (from.next->shrink(solid_, floor, ball)) from.balls.push_back({ball, {}, {}});
   return from.balls.empty() ? nullptr : &from.balls.back();
 }
 
 double BallDraws::distance(const Shrinking& from, Known& known) const {
-  if (!known.distance) known.distance = solid_.distance(known.ball.centre, from.body);
+  if (!known.distance) known.distance = solid_.distance(known.ball.centre, from.start->body);
   return *known.distance;
 }
 
 bool BallDraws::is_inside(const Shrinking& from, Known& known) const {
-  if (!known.is_inside) known.is_inside = solid_.depth(known.ball.centre, from.body) > 0;
+  if (!known.is_inside) known.is_inside = solid_.depth(known.ball.centre, from.start->body) > 0;
   return *known.is_inside;
 }
 
@@ -123,6 +127,12 @@ DrawnBalls::DrawnBalls(const SolidOracle& solid, std::uint32_t body_count)
   if (!(boxes_.total() > 0)) return;
   for (std::uint32_t b = 0; b < body_count; b += every_) {
     in_bodies_.emplace_back(solid, points_of_each(body_count), [this, b](std::size_t k) { return beside(b, k); });
+    const std::size_t corners = solid.corners(b);
+    const std::size_t count = std::min(corners, points_of_each(body_count));
+    at_corners_.emplace_back(solid, count, [this, b, corners, count](std::size_t k) -> std::optional<BallDraws::Start> {
+      const std::optional<Vec3d> p = solid_.behind_corner(b, k * corners / count);
+      return p ? std::optional(BallDraws::Start{*p, b}) : std::nullopt;
+    });
   }
 }
 

@@ -85,6 +85,10 @@ class BallDraws {
   /// @param reach_in  returns how far the surface may reach into a ball of the given radius.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, const Counts& counts, const ReachIn& reach_in) const;
+  /// Does the same, but skips points that are further from the surface than `most_depth`. This costs less.
+  template <class Counts, class ReachIn>
+  [[nodiscard]] TouchingBall grown(std::size_t k, double floor, double most_depth, const Counts& counts,
+                                   const ReachIn& reach_in) const;
 
  private:
   static constexpr std::size_t per_lock = 64;
@@ -97,11 +101,14 @@ class BallDraws {
   };
   struct Shrinking {
     bool is_drawn = false;
-    std::uint32_t body = 0;
+    std::optional<Start> start;
+    Vec3d first;  ///< the closest point of the surface
     std::optional<ShrinkingBall> next;
     std::vector<Known> balls;  ///< largest first
   };
 
+  /// Draws the k-th point if that has not been done. Returns false if it lies in no body.
+  bool draw(std::size_t k) const;
   /// Returns the last ball before the first one with a separation angle below `floor`; nullptr if there is none.
   [[nodiscard]] Known* shrunk(std::size_t k, double floor) const;
   [[nodiscard]] double distance(const Shrinking& from, Known& known) const;
@@ -126,6 +133,9 @@ class DrawnBalls {
   [[nodiscard]] std::uint32_t every() const { return every_; }
   /// Returns balls from random points just inside the surface of a body, or in its box if the surface has no triangles.
   [[nodiscard]] const BallDraws& in_body(std::uint32_t body) const { return in_bodies_[body / every_]; }
+  /// Returns balls from points behind vertices of the surface of a body. They reach the ends of rods, and the borders
+  /// of plates, however small these are. None if the surface has no triangles.
+  [[nodiscard]] const BallDraws& at_corners(std::uint32_t body) const { return at_corners_[body / every_]; }
 
  private:
   [[nodiscard]] std::optional<BallDraws::Start> in_box(std::uint32_t body, Random& random) const;
@@ -136,12 +146,19 @@ class DrawnBalls {
   Spread boxes_;
   std::uint32_t every_;
   BallDraws in_solid_;
-  std::deque<BallDraws> in_bodies_;
+  std::deque<BallDraws> in_bodies_, at_corners_;
 };
 
 template <class Counts, class ReachIn>
 TouchingBall BallDraws::grown(std::size_t k, double floor, const Counts& counts, const ReachIn& reach_in) const {
+  return grown(k, floor, HUGE_VAL, counts, reach_in);
+}
+
+template <class Counts, class ReachIn>
+TouchingBall BallDraws::grown(std::size_t k, double floor, double most_depth, const Counts& counts,
+                              const ReachIn& reach_in) const {
   const std::scoped_lock lock(locks_[k / per_lock]);
+  if (!draw(k) || length(list_[k].start->point - list_[k].first) > most_depth) return {};
   Known* const known = shrunk(k, floor);
   if (known == nullptr || !counts(known->ball)) return {};
   const TouchingBall& ball = known->ball;

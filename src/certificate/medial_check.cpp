@@ -29,6 +29,7 @@ namespace {
 struct FoundBalls {
   Offsets all;                  ///< balls from random points of the whole solid
   std::vector<Offsets> bodies;  ///< for each body: balls from points in it, near its surface if that has triangles
+  Offsets thin;                 ///< balls in the middle of parts thinner than a voxel
 };
 
 /// Returns a search tree over the cells of an axis.
@@ -94,14 +95,105 @@ Offsets offsets_of_balls(const BallDraws& draws, const BallJudge& judge, const T
   return gathered_offsets(draws.size(), "looking for what is missing", add, context);
 }
 
+/// Decides which balls count as lying in the middle of a part thinner than a voxel.
+class ThinBallJudge {
+ public:
+  ThinBallJudge(const SolidOracle& solid, const Allowances& allowed, double theta, double sought)
+      : solid_(solid),
+        allowed_(allowed),
+        floor_(std::max(sought, Allowances::opposite)),
+        reach_in_(1 - std::cos((floor_ - theta) / degrees_per_radian)) {}
+
+  /// Returns the k-th ball; a ball of radius 0 if it does not count.
+  [[nodiscard]] TouchingBall ball(const BallDraws& draws, std::size_t k, std::uint32_t body) const {
+    TouchingBall found = draws.grown(
+        k, allowed_.noise, allowed_.thin(), [&](const TouchingBall& ball) { return ball.radius <= allowed_.thin(); },
+        [](double radius) { return radius; });
+    for (int n = 0; n < most_climbs && found.radius > 0 && found.angle < floor_; ++n) found = larger(found, body);
+    const bool counts = found.angle >= floor_ && found.radius > allowed_.rounding && found.radius <= allowed_.thin() &&
+                        length(found.first - found.second) >= allowed_.lambda;
+    return counts && fits(found, body) && is_largest(found, body) ? found : TouchingBall{};
+  }
+
+ private:
+  static constexpr int most_climbs = 4;
+
+  /// Returns a larger ball in the same part of the solid, preferably one between opposite walls. Its centre is beyond
+  /// that of the given ball, away from both walls. Most balls in a part of many facets touch two facets at a small
+  /// angle. Returns a ball of radius 0 if there is none, or if the part is not thin.
+  [[nodiscard]] TouchingBall larger(const TouchingBall& ball, std::uint32_t body) const {
+    constexpr double shorter = 0.7;
+    constexpr double least_step = 0.1;  // of the radius
+    const Vec3d away = 2 * ball.centre - ball.first - ball.second;
+    const double size = length(away);
+    if (!(size > 0)) return {};
+    double best = 1.001 * ball.radius;
+    Vec3d centre = ball.centre;
+    for (double step = 2 * allowed_.thin(); step > least_step * ball.radius; step *= shorter) {
+      const Vec3d x = ball.centre + away * (step / size);
+      const double depth = solid_.distance(x, body);
+      // If two balls overlap, both are on the same side of the surface.
+      if (!(depth > best) || step > ball.radius + depth) continue;
+      if (depth > allowed_.thin()) return {};
+      best = depth;
+      centre = x;
+    }
+    if (centre == ball.centre) return {};
+    const Vec3d first = solid_.closest_point(centre, body);
+    const TouchingBall between = grown_ball(solid_, body, centre, first, floor_);
+    return between.radius > 0 && fits(between, body) ? between
+                                                     : grown_ball(solid_, body, centre, first, allowed_.noise);
+  }
+  /// Returns true if the surface hardly reaches into a ball; see BallJudge::reach_in().
+  [[nodiscard]] bool fits(const TouchingBall& ball, std::uint32_t body) const {
+    return ball.is_whole || ball.radius - solid_.distance(ball.centre, body) <= reach_in_ * ball.radius;
+  }
+  /// Returns true if no ball beside a ball is much larger. Beside means at right angles to the line between its walls.
+  /// Sheets end in wedges and strips, where larger balls are on one side.
+  [[nodiscard]] bool is_largest(const TouchingBall& ball, std::uint32_t body) const {
+    constexpr int directions = 8;
+    constexpr double much_larger = 1.05;
+    const Vec3d between = (ball.first - ball.second) / length(ball.first - ball.second);
+    const Vec3d other = std::abs(between.x) > 0.6 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+    const Vec3d across = cross(between, other);
+    const Vec3d u = across / length(across);
+    const Vec3d v = cross(between, u);
+    for (int n = 0; n < directions; ++n) {
+      const double turn = 360.0 * n / directions / degrees_per_radian;
+      const Vec3d beside = ball.centre + (u * std::cos(turn) + v * std::sin(turn)) * ball.radius;
+      if (solid_.distance(beside, body) > much_larger * ball.radius) return false;
+    }
+    return true;
+  }
+
+  const SolidOracle& solid_;
+  const Allowances& allowed_;
+  double floor_;     ///< degrees: least separation angle of the balls that count
+  double reach_in_;  ///< how far the surface may reach into a ball, as a share of its radius
+};
+
+/// Measures how far the centres of the balls in thin parts are from the axis.
+Offsets offsets_of_thin(const BallDraws& draws, std::uint32_t body, const ThinBallJudge& judge,
+                        const TriangleSearch& search, const Allowances& allowed, const Context& context) {
+  const auto add = [&](Offsets& offsets, std::size_t k) {
+    const TouchingBall ball = judge.ball(draws, k, body);
+    if (!(ball.radius > 0)) return;
+    const double near = allowed.missing_in_thin(ball.radius);
+    const double enough = std::min(near, offsets.furthest);
+    offsets.add(search.distance_above(ball.centre, enough, no_group), near, near, near, ball.centre);
+  };
+  return gathered_offsets(draws.size(), "looking for what is missing", add, context);
+}
+
 /// Computes balls from random points, the same in every run, and their distances from the axis.
 /// @param theta   degrees.
 /// @param sought  least separation angle of the balls that count, degrees.
+/// @param fitted  true if ends in thin parts are judged, too.
 /// @throws Cancelled.
 FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double theta,
-                      double sought, const Context& context) {
+                      double sought, bool fitted, const Context& context) {
   const auto body_count = static_cast<std::uint32_t>(solid.bodies.size());
-  FoundBalls found{{}, std::vector<Offsets>(body_count)};
+  FoundBalls found{{}, std::vector<Offsets>(body_count), {}};
   if (!(sought > theta)) return found;  // no angle is above theta = 180 degrees
   const DrawnBalls& drawn = solid.drawn_balls();
   if (drawn.in_solid().size() == 0) return found;
@@ -112,6 +204,12 @@ FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const All
   const BallJudge steep_judge(allowed, theta, std::max(sought, Allowances::steep));
   for (std::uint32_t b = 0; b < body_count; b += drawn.every()) {
     found.bodies[b] = offsets_of_balls(drawn.in_body(b), steep_judge, search, allowed, context);
+  }
+  if (!fitted || allowed.of_voxels || solid.solid->slack() > 0) return found;
+  const ThinBallJudge thin_judge(*solid.solid, allowed, theta, sought);
+  for (std::uint32_t b = 0; b < body_count; b += drawn.every()) {
+    found.thin.add(offsets_of_thin(drawn.in_body(b), b, thin_judge, search, allowed, context));
+    found.thin.add(offsets_of_thin(drawn.at_corners(b), b, thin_judge, search, allowed, context));
   }
   return found;
 }
@@ -133,6 +231,7 @@ constexpr double most_missed_of_surface = 0.1;  ///< largest share of missed bal
 constexpr double most_missed_of_body = 0.5;     ///< the same in one body of several: a coarse grid may miss a sheet
 constexpr double most_missed_of_voxels = 0.1;   ///< most_missed if only voxels define the inside
 constexpr double few_missed = 3;                ///< number of balls that may be missed in any case
+constexpr double few_missed_of_thin = 1;        ///< the same in thin parts, where true axes miss none
 constexpr std::size_t few_balls = 20;           ///< with fewer balls, nothing is concluded
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
@@ -477,6 +576,11 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
                          rounded_text(check.sought_angle) + " degrees, by up to " +
                          rounded_text(check.missed_in_body_by) + " at " + place_text(check.missed_in_body_at));
   }
+  if (static_cast<double>(check.thin_missed) > few_missed_of_thin) {
+    mismatches.push_back("in parts thinner than a voxel, the axis misses " + count_text(check.thin_missed) + " of " +
+                         count_text(check.thin_balls) + " medial balls by more than three of their radii, by up to " +
+                         rounded_text(check.thin_missed_by) + " at " + place_text(check.thin_missed_at));
+  }
 }
 
 double share_of(std::size_t some, std::size_t all) {
@@ -502,7 +606,11 @@ void note_missing(MedialCheck& check, const FoundBalls& found, double factor) {
   if (check.balls > 0) check.missed_share = share_of(found.all.off, check.balls);
   check.missed_by = found.all.furthest / factor;
   check.missed_at = found.all.where / factor;
-  check.judges_missing = check.balls >= few_balls;
+  check.thin_balls = found.thin.count;
+  check.thin_missed = found.thin.off;
+  check.thin_missed_by = found.thin.furthest / factor;
+  check.thin_missed_at = found.thin.where / factor;
+  check.judges_missing = check.balls >= few_balls || check.thin_balls >= few_balls;
   Offsets all;
   for (const Offsets& body : found.bodies) all.add(body);
   const auto misses = [](const Offsets& some, double most) {
@@ -585,7 +693,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   if (options.theta) {
     const double theta = std::max(*options.theta, allowed.noise);
     check.sought_angle = std::min(theta + well_above, 0.5 * (theta + 180));
-    note_missing(check, find_balls(axis, solid, allowed, theta, check.sought_angle, context), factor);
+    note_missing(check, find_balls(axis, solid, allowed, theta, check.sought_angle, options.fitted, context), factor);
   }
   check.allowance = allowed.middle / factor;
   check.missing_allowance = allowed.missing / factor;

@@ -138,6 +138,7 @@ class ShellOracle : public SolidOracle {
         body_of_(shells_.of_triangle),
         boxes_(shells_.bodies),
         surfaces_(shells_.bodies),
+        corners_(shells_.bodies),
         sites_(named, context) {
     for (std::size_t t = 0; t < body_of_.size(); ++t) {
       if (body_of_[t] == no_group) continue;
@@ -149,6 +150,7 @@ class ShellOracle : public SolidOracle {
       const auto [a, b, c] = corners_of(mesh_, t);
       surfaces_[body_of_[t]].add(length(cross(b - a, c - a)), t);
     }
+    find_corners();
     search_ = shells_.shells.size() == 1 ? std::move(shell_search) : TriangleSearch(mesh, body_of_, context);
   }
 
@@ -192,6 +194,21 @@ class ShellOracle : public SolidOracle {
     const double inwards = (shells_.outwards[t] > 0) == is_void ? 1 : -1;
     const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     return random_point(corners, random) + normal * (inwards * 1e-7 * boxes_[body].diagonal() / length(normal));
+  }
+
+  [[nodiscard]] std::size_t corners(std::uint32_t body) const override { return corners_[body].size(); }
+
+  [[nodiscard]] std::optional<Vec3d> behind_corner(std::uint32_t body, std::size_t corner) const override {
+    constexpr std::uint32_t most_attempts = 4;
+    constexpr double aside = 0.02;  // a chord of a regular shape may meet an edge exactly
+    const Vec3d inwards = inwards_at(corners_[body][corner]);
+    const Vec3d from = mesh_.vertices[vertex_of(corners_[body][corner])];
+    Random random(0xc04eULL + corner);
+    for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
+      const std::optional<Vec3d> middle = middle_of_chord(from, inwards + random.in_ball() * aside, body);
+      if (middle) return middle;
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] double depth(const Vec3d& p, std::uint32_t body) const override {
@@ -339,6 +356,71 @@ class ShellOracle : public SolidOracle {
     return points;
   }
 
+  /// Corner of a triangle: 3 * triangle + 0, 1 or 2.
+  using Corner = std::uint32_t;
+
+  [[nodiscard]] std::uint32_t vertex_of(Corner corner) const { return mesh_.triangles[corner / 3][corner % 3]; }
+  /// Finds one corner at each vertex of the bodies' surfaces.
+  void find_corners() {
+    std::vector<bool> is_found(mesh_.vertices.size(), false);
+    for (std::uint32_t t = 0; t < body_of_.size(); ++t) {
+      if (body_of_[t] == no_group || shells_.outwards[t] == 0) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = mesh_.triangles[t][k];
+        if (!is_found[v]) corners_[body_of_[t]].push_back(3 * t + k);
+        is_found[v] = true;
+      }
+    }
+  }
+  /// Returns the mean direction of the triangles around a vertex, into the body. Each triangle counts by its angle at
+  /// the vertex, so that the cut into triangles does not matter. The result is not a unit vector, and may be zero.
+  [[nodiscard]] Vec3d inwards_at(Corner corner) const {
+    constexpr int most_triangles = 1024;
+    const std::uint32_t v = vertex_of(corner);
+    const bool is_void = shells_.shells[shells_.of_triangle[corner / 3]].depth % 2 == 1;
+    Vec3d sum;
+    std::uint32_t t = corner / 3;
+    std::uint32_t before = no_group;
+    for (int n = 0; n < most_triangles; ++n) {
+      const Triangle& own = mesh_.triangles[t];
+      const std::uint32_t k = own[0] == v ? 0 : own[1] == v ? 1 : 2;
+      const Vec3d& at = mesh_.vertices[v];
+      const Vec3d p = mesh_.vertices[own[(k + 1) % 3]] - at;
+      const Vec3d q = mesh_.vertices[own[(k + 2) % 3]] - at;
+      const Vec3d normal = cross(p, q);
+      if (const double size = length(normal); size > 0) {
+        const double inwards = (shells_.outwards[t] > 0) == is_void ? 1 : -1;
+        sum += normal * (inwards * std::atan2(size, dot(p, q)) / size);
+      }
+      // The sides at the vertex lead to the triangles before and after this one.
+      const std::uint32_t first = shells_.beside[3 * t + k];
+      const std::uint32_t second = shells_.beside[3 * t + (k + 2) % 3];
+      const std::uint32_t next = first == before ? second : first;
+      before = std::exchange(t, next);
+      if (t == corner / 3) break;
+    }
+    return sum;
+  }
+  /// Returns the middle of the part in a body of a line from a vertex.
+  [[nodiscard]] std::optional<Vec3d> middle_of_chord(const Vec3d& from, const Vec3d& direction,
+                                                     std::uint32_t body) const {
+    const double size = length(direction);
+    const double reach = boxes_[body].diagonal();
+    const double nothing = 1e-7 * reach;
+    if (!(size > 0) || !(nothing > 0)) return std::nullopt;
+    const Vec3d start = from + direction * (nothing / size);
+    std::vector<Crossing> crossings;
+    if (!search_.crossings(line_between(start, from + direction * (reach / size)), crossings, reach)) {
+      return std::nullopt;
+    }
+    double first = HUGE_VAL;
+    for (const Crossing& crossing : crossings) {
+      if (body_of_[crossing.triangle] == body && crossing.at > 0) first = std::min(first, crossing.at);
+    }
+    if (!(first < reach)) return std::nullopt;
+    return start + direction * (0.5 * first / size);
+  }
+
   struct DeepPoint {
     Vec3d at;
     double depth = 0;  ///< distance from the wall of a void, above 0
@@ -425,11 +507,12 @@ class ShellOracle : public SolidOracle {
   MeshView mesh_;
   MeshView named_;  ///< mesh whose sites distance_from_site() uses
   ClosedShells shells_;
-  std::vector<std::uint32_t> body_of_;  ///< for each triangle
-  std::vector<Box3> boxes_;             ///< for each body
-  std::vector<Spread> surfaces_;        ///< for each body: its triangles
-  SiteTable sites_;                     ///< sites of `named_`
-  TriangleSearch search_;               ///< with bodies as groups
+  std::vector<std::uint32_t> body_of_;        ///< for each triangle
+  std::vector<Box3> boxes_;                   ///< for each body
+  std::vector<Spread> surfaces_;              ///< for each body: its triangles
+  std::vector<std::vector<Corner>> corners_;  ///< for each body: one corner at each vertex
+  SiteTable sites_;                           ///< sites of `named_`
+  TriangleSearch search_;                     ///< with bodies as groups
 };
 
 }  // namespace

@@ -119,6 +119,15 @@ class SolidOracle {
   [[nodiscard]] virtual std::optional<Vec3d> beside_surface(std::uint32_t /*body*/, Random& /*random*/) const {
     return std::nullopt;
   }
+  /// Returns the number of vertices of the surface of a body; 0 if the surface has no triangles.
+  [[nodiscard]] virtual std::size_t corners(std::uint32_t /*body*/) const { return 0; }
+  /// Returns the middle of a chord from a vertex of the surface of a body. The chord has about the mean direction of
+  /// the triangles around the vertex. At the end of a rod or the border of a plate, that is about the end of their
+  /// middle. Returns nullopt if there is none, or if that is undecided.
+  /// @param corner  below corners().
+  [[nodiscard]] virtual std::optional<Vec3d> behind_corner(std::uint32_t /*body*/, std::size_t /*corner*/) const {
+    return std::nullopt;
+  }
   /// Returns true if the surface is that of the bodies, and has triangles.
   [[nodiscard]] virtual bool has_triangles() const { return false; }
   /// Returns the diagonal of a voxel if the solid consists of voxels, otherwise 0.

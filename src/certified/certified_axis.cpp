@@ -101,6 +101,7 @@ CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMe
     PhaseTimer timer(by.phases);
     out.axis = make(form);
     out.metadata = metadata;
+    out.metadata.fitted = form.is_fitted;
     if (out.axis.axis.positions.size() < out.axis.vertices_before) out.metadata.deviation = out.axis.deviation;
     timer.lap("simplify");
     out.certificate = by.certify({out.axis, out.metadata, by.whole, by.grid_shift, by.phases});

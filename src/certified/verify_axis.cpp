@@ -34,6 +34,7 @@ CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, Certific
   take(options.lambda, metadata.lambda);
   take(options.spacing, metadata.spacing);
   take(options.deviation, metadata.deviation);
+  options.fitted = options.fitted || metadata.fitted;
   return options;
 }
 

@@ -218,3 +218,70 @@ def test_flat_rods_keep_their_ends(seed):
     assert axis.certificate.holds
     gaps = spatial.cKDTree(axis.vertices).query(wire.middles[0].path)[0]
     assert gaps.max() <= 3 * radius
+
+
+def plate(size, thickness, turn=ALONG_Z):
+    corners = size / 2 * np.array([[-1, -1], [1, -1], [1, 0.7], [-1, 0.7]])
+    vertices, triangles = swept(np.array([[0, 0, -thickness / 2], [0, 0, thickness / 2]]), corners)
+    border = np.c_[corners, 0 * corners[:, :1]] * (1 - thickness / size)
+    return turned((vertices, triangles), [Middle(border[1:3], thickness / 2)], turn)
+
+
+# All parts are thinner than a voxel.
+THIN = {
+    "rod": (120, lambda: straight(300, 0.5, 48)),
+    "rod, turned": (165, lambda: straight(190, 0.2, 16, rotation(5308))),
+    "4 sides": (140, lambda: straight(300, 0.5, 4, HALFWAY)),
+    "6 sides": (165, lambda: straight(260, 0.4, 6, ALONG_X, (0.1, 0.2, 0.3))),
+    "flat rod": (165, lambda: straight(400, 0.5, "bar", rotation(7), only_curves=False)),
+    "1000 diameters": (120, lambda: straight(1000, 0.5, 48)),
+    "3000 diameters": (120, lambda: straight(3000, 0.5, 12)),
+    "L": (120, lambda: corner(250, 100, 0.4)),
+    "T, turned": (130, lambda: tee(200, 60, 0.3, rotation(12))),
+    "rods beside a ball": (120, lambda: beside_ball(200, 0.2, ALONG_X)),
+    "wire": (150, lambda: wave(300, 8, 0.4, rotation(15))),
+    "spring": (160, lambda: spring(5, 30, 5, 0.2)),
+    "plate": (110, lambda: plate(100, 0.3)),
+    "plate, turned": (150, lambda: plate(100, 0.2, rotation(21))),
+}
+
+
+def without(axis, is_gone):
+    """The axis without some of its vertices and the cells at them."""
+    number = np.cumsum(~is_gone) - 1
+    edges, triangles = np.asarray(axis.edges), np.asarray(axis.triangles)
+    has_edge, has_triangle = ~is_gone[edges].any(axis=1), ~is_gone[triangles].any(axis=1)
+    return blum.MedialComplex(
+        axis.vertices[~is_gone],
+        radius=axis.radius[~is_gone],
+        footprints=axis.footprints[~is_gone],
+        separation_angle=axis.separation_angle[~is_gone],
+        edges=number[edges[has_edge]],
+        edge_angle=axis.edge_angle[has_edge],
+        edge_role=axis.edge_role[has_edge],
+        triangles=number[triangles[has_triangle]],
+        triangle_angle=axis.triangle_angle[has_triangle],
+    )
+
+
+@pytest.mark.parametrize("name", THIN)
+def test_a_missing_end_of_a_thin_part_is_found(name):
+    """The axis is certified. Without its last two diameters it is not; in a plate, these are a strip at a border."""
+    theta, make = THIN[name]
+    wire = make()
+    whole = blum.medial_axis(*wire.mesh)
+    axis = whole.simplify(theta, fit=True)
+    claims = {"theta": theta, "spacing": whole.report.bodies[-1].spacing, "fitted": True, "angles": False}
+    middle = wire.middles[-1]
+    assert middle.radius < claims["spacing"] / 2
+    true = blum.certify(without(axis, np.zeros(len(axis.vertices), dtype=bool)), *wire.mesh, **claims)
+    assert true.holds, true.mismatches
+    assert true.medial.thin_balls > 20 and true.medial.thin_missed == 0
+    end = np.array(middle.path[-2:] if "plate" in name else middle.path[-1:])
+    is_gone = spatial.cKDTree(dense(end, middle.radius / 4)).query(axis.vertices)[0] < 4 * middle.radius
+    found = blum.certify(without(axis, is_gone), *wire.mesh, **claims)
+    assert found.topology_holds
+    assert any("in parts thinner than a voxel, the axis misses" in text for text in found.mismatches), found.mismatches
+    assert np.linalg.norm(np.array(found.medial.thin_missed_at) - end, axis=1).min() <= 4 * middle.radius or (
+        "plate" in name
+    )

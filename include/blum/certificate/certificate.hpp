@@ -315,6 +315,11 @@ struct Description<BallUnionCheck> {
 /// that count, the condition must hold for half of them. If it fails for more than 10 % of these balls in all bodies
 /// together, it must hold for 90 % of them in each body. In any case, the condition may fail for three balls.
 ///
+/// If borders were fitted, parts thinner than a voxel are also judged by their own radius. A ball counts if its radius
+/// is at most two thirds of a voxel, and its angle at least 150 degrees and `sought_angle`. No ball beside it may be
+/// larger by more than 5 %. The axis must come within three radii of its centre, except for one ball. So a missing end
+/// of a wire is found if it is longer than that. Such balls are also grown from vertices of the surface.
+///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
 /// but not judged.
 struct MedialCheck {
@@ -352,6 +357,10 @@ struct MedialCheck {
   /// Largest distance of the centre of a ball of that body from the axis, mesh units.
   double missed_in_body_by = 0;
   Vec3d missed_in_body_at;      ///< Centre of the ball at that distance, mesh units.
+  std::size_t thin_balls = 0;   ///< Balls in the middle of parts thinner than a voxel; 0 if they were not judged.
+  std::size_t thin_missed = 0;  ///< Balls among `thin_balls` that are more than three of their radii from the axis.
+  double thin_missed_by = 0;    ///< Largest distance of the centre of one of `thin_balls` from the axis, mesh units.
+  Vec3d thin_missed_at;         ///< Centre of the ball at that distance, mesh units.
   bool judges_missing = false;  ///< True if at least 20 balls count, in the whole solid or in one body.
   bool holds = false;           ///< True if no judged limit is exceeded.
 };
@@ -417,6 +426,13 @@ struct Description<MedialCheck> {
              "largest distance of the centre of one of that body's balls from the axis"},
       Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units",
              "centre of the ball at the distance missed_in_body_by"},
+      Member{"thin_balls", &MedialCheck::thin_balls, "", "balls in the middle of parts thinner than a voxel"},
+      Member{"thin_missed", &MedialCheck::thin_missed, "",
+             "balls among thin_balls that are more than three of their radii from the axis"},
+      Member{"thin_missed_by", &MedialCheck::thin_missed_by, "mesh units",
+             "largest distance of the centre of one of thin_balls from the axis"},
+      Member{"thin_missed_at", &MedialCheck::thin_missed_at, "mesh units",
+             "centre of the ball at the distance thin_missed_by"},
       Member{"judges_missing", &MedialCheck::judges_missing, "", "true if enough balls count to judge missing parts"},
       Member{"holds", &MedialCheck::holds, "", "true if no limit is exceeded"},
   };
@@ -582,6 +598,9 @@ struct CertificateOptions {
   std::optional<double> lambda = {};     ///< Mesh units.
   std::optional<double> spacing = {};    ///< Side of a voxel, mesh units.
   std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units.
+  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). Then MedialCheck also judges parts
+  /// thinner than a voxel, by the radius there. Otherwise, borders may end up to two voxels early.
+  bool fitted = false;
 };
 
 template <>
@@ -605,6 +624,7 @@ struct Description<CertificateOptions> {
              Range::positive()},
       Member{"deviation", &CertificateOptions::deviation, "mesh units",
              "largest change by removed vertices that the axis reports", Range::at_least(0)},
+      Member{"fitted", &CertificateOptions::fitted, "", "true if the axis reports that its borders were fitted"},
   };
 };
 

@@ -23,6 +23,9 @@ struct MedialMetadata {
   std::optional<double> spacing = {};  ///< Smallest side of a voxel, mesh units.
   /// DecimatedAxis::deviation, >= 0, mesh units; unset if no vertices were removed.
   std::optional<double> deviation = {};
+  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). Then ends in parts thinner than a voxel
+  /// are judged by the radius there.
+  bool fitted = false;
   /// Rule of the solid to which the topology refers: "polyhedron", "winding" or "voxels" (SolidRule).
   std::string solid_rule = {};
   /// Grid of the voxel centres. Needed for SolidRule::winding, where the solid consists of voxels.
@@ -49,6 +52,7 @@ struct Description<MedialMetadata> {
       Member{"lambda", &MedialMetadata::lambda, "mesh units", "option lambda of the axis"},
       Member{"spacing", &MedialMetadata::spacing, "mesh units", "smallest side of a voxel"},
       Member{"deviation", &MedialMetadata::deviation, "mesh units", "largest distance from the axis with all vertices"},
+      Member{"fitted", &MedialMetadata::fitted, "", "true if borders were fitted to the surface"},
       Member{"solid_rule", &MedialMetadata::solid_rule, "", "rule that defines the solid of the axis"},
       Member{"grid", &MedialMetadata::grid, "", "grid of voxel centres"},
       Member{"label", &MedialMetadata::label, "", "label of the voxels of an image that are selected"},

@@ -286,6 +286,8 @@ class PairReader {
   const std::string& name_;
 };
 
+constexpr const char* fitted_borders = "fitted";
+
 }  // namespace
 
 FileMetadata to_pairs(const MedialMetadata& metadata) {
@@ -300,6 +302,7 @@ FileMetadata to_pairs(const MedialMetadata& metadata) {
   if (metadata.lambda) pairs.emplace_back("lambda", exact_text(*metadata.lambda));
   if (metadata.spacing) pairs.emplace_back("spacing", exact_text(*metadata.spacing));
   if (metadata.deviation) pairs.emplace_back("deviation", exact_text(*metadata.deviation));
+  if (metadata.fitted) pairs.emplace_back("borders", fitted_borders);
   if (!metadata.solid_rule.empty()) pairs.emplace_back("solid_rule", metadata.solid_rule);
   if (metadata.grid) add_grid(pairs, *metadata.grid);
   if (metadata.label) pairs.emplace_back("label", std::to_string(*metadata.label));
@@ -322,6 +325,7 @@ MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name) {
   metadata.lambda = reader.number("lambda");
   metadata.spacing = reader.number("spacing");
   metadata.deviation = reader.not_negative("deviation");
+  metadata.fitted = reader.text("borders") == fitted_borders;
   metadata.solid_rule = reader.text("solid_rule");
   metadata.grid = reader.grid();
   metadata.label = reader.number<std::int64_t>("label");
