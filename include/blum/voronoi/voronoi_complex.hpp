@@ -86,8 +86,8 @@ struct Description<VoronoiOptions> {
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
       Member{"method", &VoronoiOptions::method, "",
-             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always cubes; traced: as auto, but "
-             "seams are followed instead of cubes, if this succeeds"},
+             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always; traced: seams are followed "
+             "instead, if this succeeds"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "convex bodies: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
@@ -158,9 +158,8 @@ struct VoronoiReport {
   double joined = 0;    ///< If exact or traced: junctions and seams within this distance are one, mesh units.
   /// If exact: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second, smaller one.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
-  /// True if the seams were traced. Then sheets, seams and junctions are those of the diagram within rounding, as far
-  /// as checks show: all sheets are closed up, and the complex has the expected Betti numbers. See
-  /// VoronoiMethod::traced.
+  /// True if the seams were traced (VoronoiMethod::traced). Then sheets, seams and junctions are those of the diagram
+  /// within `joined`, as far as checks show. All sheets are closed, and the complex has the expected Betti numbers.
   bool traced = false;
   /// If traced: each point of a wall with two footprints is at most this much farther from the wall's own sites than
   /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
@@ -173,8 +172,8 @@ struct VoronoiReport {
   BettiNumbers found{};       ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
   /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact, it
-  /// covers rounding and joined junctions, and the diagram is that of the planes, within `flatness` of the corners. 0
-  /// if traced: not known.
+  /// covers rounding and joined junctions. The exact diagram is then that of the planes, within `flatness` of the
+  /// corners. If traced, the bound is not known, and this is 0.
   double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.

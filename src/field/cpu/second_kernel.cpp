@@ -161,8 +161,8 @@ class SecondWorker {
             static_cast<std::size_t>(std::min_element(squared.begin(), squared.end()) - squared.begin());
         if (!(squared[lane] < hwy::HighestValue<float>())) return false;
         squared[lane] = hwy::HighestValue<float>();
-        const auto kind = static_cast<Kind>(index[lane] >> 28);
-        const Record& record = candidates[kind][index[lane] & 0x0fffffffU];
+        const auto kind = static_cast<Kind>(index[lane] >> kind_shift);
+        const Record& record = candidates[kind][index[lane] & ((1U << kind_shift) - 1)];
         Vec3f point;
         if (!may_be(job_.labels[record.id]) || !closest_on_record(kind, record, center, point)) continue;
         out.point[out.count] = point;

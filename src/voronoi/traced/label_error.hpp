@@ -18,8 +18,8 @@ struct WallTriangle {
   std::array<TracedSites::Index, 2> sites{};
 };
 
-/// Returns a bound e: for each point y of the triangles, no point of the border is closer to y than the sites on both
-/// sides of the triangle by more than e.
+/// Returns a bound on the error of walls. At each point of a triangle, the border is closer than the triangle's sites
+/// by at most this bound.
 ///
 /// Let A be the affine function on a triangle that equals the larger distance of its two sites at the corners. The
 /// distance from a convex set is convex, so neither site is further away than A. For each triangle k of the border, a

@@ -295,7 +295,7 @@ void SeamGraph::take_ray(std::uint32_t junction, Curve& curve, std::uint32_t num
     constexpr double same_way = 0.99;
     const double cosine = dot(ray.seam.ray.direction, curve.directions[1]);
     if (ray.curve != none || cosine < same_way) continue;
-    // Of several seams with one tangent, the one between the same sites.
+    // Several seams may have this tangent. The one between the same sites comes first.
     const double score = cosine + (ray.seam.ray.sites == curve.curve.sites ? 1 : 0);
     if (score <= most) continue;
     most = score;

@@ -66,8 +66,9 @@ class SeamTracer {
                                                     const Vec3d& normal) const;
   /// Returns the direction of a curve at one of its points, a unit vector or 0.
   [[nodiscard]] Vec3d tangent(const TracedCurve& curve, const Vec3d& x) const;
-  /// Returns a curve on which three or more sites, or sites of fewer footprints and a side of a domain, are equally
-  /// close; nothing if they do not determine one.
+  /// Returns a curve on which sites are equally close, or nothing if they do not determine one. With fewer than three
+  /// footprints, the curve lies in sides of domains.
+  /// @param towards  approximate direction of the curve at `at`, a unit vector.
   [[nodiscard]] std::optional<TracedCurve> curve_of(const std::vector<TracedSites::Index>& sites, const Vec3d& at,
                                                     const Vec3d& towards) const;
 

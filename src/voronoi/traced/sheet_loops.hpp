@@ -15,8 +15,8 @@ struct SheetLoops {
   std::vector<std::vector<SeamGraph::Side>> sides;  ///< the walls beside the curves of each loop
 };
 
-/// Follows the boundaries of sheets. At each junction, the walls beside its curves are paired: two are one sheet if
-/// they have the same sites, and no curve lies between them.
+/// Follows the boundaries of sheets. At each junction, the walls beside its curves are paired. Two walls are one sheet
+/// if they have the same sites, and no curve lies between them.
 /// @throws TraceProblem if a wall has no partner, or is the partner of two.
 [[nodiscard]] SheetLoops sheet_loops(const TracedSites& sites, const TracedStructure& structure);
 

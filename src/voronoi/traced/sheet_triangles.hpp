@@ -22,8 +22,8 @@ struct SheetTriangles {
 };
 
 /// Triangulates a sheet. Triangles are split until the middles of their edges, and their own middles, are close to the
-/// sheet, and the distances from its sites are close to the means of the corners' distances. Edges of the boundary are
-/// not split.
+/// sheet. The distances from its sites must also be close to the mean distances of the corners. Edges of the boundary
+/// are not split.
 /// @param loops  points of the boundary; the outer loop first.
 /// @param chord  largest difference of these places and distances, > 0, mesh units.
 /// @param longest  inner edges that are longer are split, > 0, mesh units.

@@ -229,7 +229,7 @@ class Assembly {
     return out;
   }
 
-  /// Returns a point inside the longest curve of a sheet's boundary that is no edge of the polyhedron.
+  /// Returns a point inside the longest curve of a sheet's boundary inside the solid.
   [[nodiscard]] Vec3d point_of(const Sheet& sheet) const {
     Vec3d best;
     double longest = -1;

@@ -99,9 +99,8 @@ class TracedSites {
   [[nodiscard]] bool leads_inside(Index i, const std::vector<const DomainSide*>& sides, const Vec3d& h,
                                   double tolerance) const;
 
-  /// Returns the side of a domain between two sites of which one belongs to the border of the other: between a face and
-  /// its edge, an edge and its end, or two edges on one line. It points towards the domain of the smaller site, or of
-  /// `second`. Null for other sites.
+  /// Returns the side of a domain between a face and its edge, between an edge and its end, or between two edges on one
+  /// line. It points towards the domain of the smaller site, or of `second`. Null for other sites.
   [[nodiscard]] const DomainSide* side_between(Index first, Index second) const;
 
   /// The closest sites of a point.

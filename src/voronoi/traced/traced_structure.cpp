@@ -18,13 +18,13 @@ std::vector<SeamGraph::Side> sides_to_cross(const TracedStructure& structure, co
                                             std::size_t per_loop) {
   std::vector<SeamGraph::Side> out;
   for (const std::vector<SeamGraph::Side>& loop : loops.sides) {
-    std::vector<std::pair<double, SeamGraph::Side>> seams;
-    for (const SeamGraph::Side& side : loop) {
-      const TracedStructure::Curve& curve = structure.curves[side.curve];
-      if (!curve.is_edge) seams.emplace_back(squared_length(curve.points.back() - curve.points.front()), side);
+    std::vector<std::pair<double, std::size_t>> seams;  // (length with a minus sign, place in the loop)
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const TracedStructure::Curve& curve = structure.curves[loop[k].curve];
+      if (!curve.is_edge) seams.emplace_back(-squared_length(curve.points.back() - curve.points.front()), k);
     }
-    std::stable_sort(seams.begin(), seams.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (std::size_t k = 0; k < std::min(per_loop, seams.size()); ++k) out.push_back(seams[k].second);
+    std::sort(seams.begin(), seams.end());
+    for (std::size_t k = 0; k < std::min(per_loop, seams.size()); ++k) out.push_back(loop[seams[k].second]);
   }
   return out;
 }

@@ -52,8 +52,8 @@ TracedSites sites_of(const TriangleMesh& mesh) {
   return *TracedSites::of(mesh, table, polyhedron_sites(mesh, table), 0);
 }
 
-/// A profile of n sides, r reflex corners, A arcs and N nodes makes a long prism of 2 (n + r) + A sheets, 2 A + N seams
-/// and 2 N + 2 n junctions. The L has 6, 1, 11 and 5.
+/// Let a profile have n sides, r reflex corners, A arcs and N nodes. A long prism over it has 2 (n + r) + A sheets,
+/// 2 A + N seams and 2 N + 2 n junctions. The L has 6, 1, 11 and 5.
 TEST(TracedDiagram, OfALongPrismHasTheCountsOfItsProfile) {
   EXPECT_EQ(counts_of(prism(ell, 20)), (Counts{25, 27, 22}));
 }
