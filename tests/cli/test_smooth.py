@@ -47,10 +47,10 @@ def test_a_slanted_rod_has_a_curve_and_only_narrow_sheets(rod, tmp_path):
     assert solid["asked_spacing"] == 1 and solid["smooth"]["iterations"] == 60
     assert 0 < solid["smooth"]["largest_move"] < 0.5 and solid["smooth"]["held_vertices"] == 0
     assert least["counts"]["triangles"] == 0 and least["counts"]["curve_edges"] > 0
-    # Sections that are not quite round leave ribbons of 0.6 voxels mean width. In the round ends, bumps with angles of
+    # Sections that are not quite round leave ribbons of 0.7 voxels mean width, up to the ends. In the round ends, bumps with angles of
     # 60 to 70 degrees reach further.
     arrays = np.load(tmp_path / "a-theta60.npz")
-    assert axis["counts"]["sheets"] <= 3 and areas(arrays).sum() < 0.65 * 20
+    assert axis["counts"]["sheets"] <= 3 and areas(arrays).sum() < 0.7 * 20
     assert abs(arrays["radius"].mean() - 4) < 0.4
     off = offsets(arrays["vertices"])
     assert off.max() < 1.5 and off[arrays["separation_angle"] > 75].max() < 0.7
