@@ -22,7 +22,7 @@ from walls_oracle import seams, sites_of, walls
 
 # A part of all families: the whole takes four minutes.
 SYMMETRIC = families.symmetric_profiles()
-PROFILES = families.profiles()[::4]
+PROFILES = families.profiles()[::6]
 SOLIDS = [*families.named_blocks(), *families.dented_tetrahedra(), *families.spiked(), *families.with_voids()]
 SOLIDS += [families.sheared(solid) for solid in families.named_blocks()] + families.random_blocks(6)
 SOLIDS += [*families.star_shapes()[:1], notched_box()]
@@ -196,7 +196,7 @@ def test_walls_of_a_corner():
 # Walls of all solids
 
 
-@pytest.mark.parametrize("solid", **by_name(SOLIDS[::4]))
+@pytest.mark.parametrize("solid", **by_name(SOLIDS[::5]))
 def test_volumes_and_both_sides(solid):
     """Regions fill the solid. Both sites of each wall see the same area, with other weights."""
     found = walls(solid.vertices, solid.triangles, 40_000)

@@ -79,7 +79,7 @@ class ErrorBound {
       close.push_back(border);
       error = std::max(error, -least);
     }
-    constexpr int most_depth = 7;
+    constexpr int most_depth = 5;
     if (error <= target_ || depth == most_depth) return error;
     const Corners& c = part.corners;
     const auto& r = part.radii;

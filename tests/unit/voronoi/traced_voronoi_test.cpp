@@ -96,7 +96,7 @@ TEST(TracedDiagram, HasWallsBetweenTheirClosestSites) {
   const TriangleMesh mesh = make_bracket();
   const VoronoiComplex walls = walls_of(mesh);
   ASSERT_TRUE(walls.report.traced) << walls.report.trace_problem;
-  EXPECT_LE(walls.report.label_error, 2 * walls.report.chord);
+  EXPECT_LE(walls.report.label_error, 4 * walls.report.chord);
   const TracedSites sites = sites_of(mesh);
   const auto radii = walls.complex.vertex_columns.get<double>("radius");
   for (std::size_t v = 0; v < radii.size(); ++v) {
