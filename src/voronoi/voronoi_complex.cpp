@@ -284,7 +284,8 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
     timer.lap("homology");
   }
   report.traced = true;
-  // Points between the corners are up to twice the chord from the wall, so a bound below that would need no end of parts.
+  // Points between the corners are up to twice the chord from the wall, so a bound below that would need no end of
+  // parts.
   constexpr double in_chords = 4;
   const std::vector<WallTriangle> walls = wall_triangles(sites, out.complex);
   report.label_error = label_error(sites, mesh, table, walls, in_chords * chord, context);

@@ -77,7 +77,7 @@ SeamRay LocalStar::ray(const Vec3d& direction) const {
   std::vector<double> angles;
   const auto add_line = [&](const Vec3d& normal) {
     const double a = dot(normal, right), b = dot(normal, up);
-    if (std::hypot(a, b) < 1e-9) return;
+    if (!(std::hypot(a, b) >= 1e-9)) return;  // also without a number
     const double angle = std::atan2(-a, b);
     angles.push_back(angle);
     angles.push_back(angle + (angle > 0 ? -std::numbers::pi : std::numbers::pi));

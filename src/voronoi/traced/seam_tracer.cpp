@@ -427,7 +427,7 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
       const auto met = meeting_point(touched ? *touched : *found, radius);
       out.points.push_back(met ? *met : touched ? *touched : *found);
       out.sites = met || touched ? sites_.closest(out.points.back(), tolerance).sites : there.sites;
-      out.end = TraceEnd::event;
+      out.end = out.sites.size() > 1 ? TraceEnd::event : TraceEnd::failed;
       if (there.radius < touching * tolerance) end_at_border(out);
       return out;
     }
@@ -444,7 +444,7 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
           step = 0.1 * sites_.blur(radius);
         } else {
           out.sites = there.sites;
-          out.end = TraceEnd::event;
+          out.end = out.sites.size() > 1 ? TraceEnd::event : TraceEnd::failed;
           if (there.radius < touching * tolerance) end_at_border(out);
           return out;
         }
