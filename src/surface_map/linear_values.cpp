@@ -77,9 +77,14 @@ class PercentileSearch {
       }
     }
     below_ = below.value();
-    weight_of_low_ = below_;
-    weight_of_high_ = below_;
-    for (const LinearValue& v : active_) weight_of_high_ += v.weight;
+    double all = below_;
+    for (const LinearValue& v : active_) all += v.weight;
+    set_weights(below_, all);
+  }
+
+  void set_weights(double low, double high) {
+    weight_of_low_ = low;
+    weight_of_high_ = high;
   }
 
   /// Narrows the interval until it is not longer than `error`.

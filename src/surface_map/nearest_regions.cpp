@@ -407,6 +407,7 @@ Facet make_facet(std::span<const Vec3d> corners, std::span<const SiteId> vertice
   constexpr double least_height = 0.02;
   Facet out;
   const std::size_t count = corners.size();
+  if (count == 0) return out;
   double longest = 0;
   for (std::size_t k = 0; k < count; ++k) {
     out.corners.push_back(corners[k]);

@@ -62,6 +62,28 @@ TracedSites::Index LocalStar::site_in(const Vec3d& direction) const {
   return loose.empty() ? members_.front().site : loose.front()->site;
 }
 
+TracedSites::Index LocalStar::site_beside(const std::vector<const Member*>& near, const Vec3d& direction,
+                                          const Vec3d& across) const {
+  const Vec3d aside = direction + across * 1e-3;
+  Index best = near.front()->site;
+  double least = std::numeric_limits<double>::infinity();
+  double least_bend = least;
+  for (const Member* member : near) {
+    const bool is_inside = std::all_of(member->sides.begin(), member->sides.end(), [&](const DomainSide* side) {
+      return std::abs(dot(side->normal, direction)) > angle_tolerance_ || dot(side->normal, across) >= 0;
+    });
+    const bool is_corner = sites_[member->site].kind == SiteKind::face && member->sides.size() == 2;
+    if (is_corner ? !sites_.leads_inside(member->site, member->sides, aside, 0) : !is_inside) continue;
+    const double rate = dot(groups_[member->group], across);
+    const double own_bend = bend(*member, aside);
+    if (rate > least + 1e-12 || (rate > least - 1e-12 && own_bend >= least_bend)) continue;
+    least = rate;
+    least_bend = own_bend;
+    best = member->site;
+  }
+  return best;
+}
+
 SeamRay LocalStar::ray(const Vec3d& direction) const {
   SeamRay out;
   out.direction = direction;
@@ -103,28 +125,7 @@ SeamRay LocalStar::ray(const Vec3d& direction) const {
   if (kept.size() > 1 && kept.front() + 2 * std::numbers::pi - kept.back() <= angle_tolerance_) kept.pop_back();
   if (kept.empty()) return out;
   const auto way = [&](double angle) { return right * std::cos(angle) + up * std::sin(angle); };
-  // Across the direction, only differences to the gradient along it count.
-  const auto site_at = [&](double angle) {
-    const Vec3d across = way(angle);
-    const Vec3d aside = direction + across * 1e-3;
-    Index best = near.front()->site;
-    double least = std::numeric_limits<double>::infinity();
-    double least_bend = least;
-    for (const Member* member : near) {
-      const bool is_inside = std::all_of(member->sides.begin(), member->sides.end(), [&](const DomainSide* side) {
-        return std::abs(dot(side->normal, direction)) > angle_tolerance_ || dot(side->normal, across) >= 0;
-      });
-      const bool is_corner = sites_[member->site].kind == SiteKind::face && member->sides.size() == 2;
-      if (is_corner ? !sites_.leads_inside(member->site, member->sides, aside, 0) : !is_inside) continue;
-      const double rate = dot(groups_[member->group], across);
-      const double own_bend = bend(*member, aside);
-      if (rate > least + 1e-12 || (rate > least - 1e-12 && own_bend >= least_bend)) continue;
-      least = rate;
-      least_bend = own_bend;
-      best = member->site;
-    }
-    return best;
-  };
+  const auto site_at = [&](double angle) { return site_beside(near, direction, way(angle)); };
   std::vector<Index> sectors;  // sector k is counterclockwise of angle k
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const double next = k + 1 < kept.size() ? kept[k + 1] : kept.front() + 2 * std::numbers::pi;
@@ -146,6 +147,23 @@ void LocalStar::add(const Vec3d& direction, std::vector<SeamRay>& rays) const {
   }
   SeamRay found = ray(h);
   if (found.ring.germs.size() > 2) rays.push_back(std::move(found));
+}
+
+std::vector<LocalStar::Plane> LocalStar::planes_of_groups() const {
+  std::vector<Plane> planes;
+  for (const Member& first : members_) {
+    for (const DomainSide* side : first.sides) planes.push_back({side->normal, first.group});
+    for (const Member& second : members_) {
+      if (&second <= &first || second.group != first.group) continue;
+      for (const double sign : {1.0, -1.0}) {
+        const Vec3d normal = first.across + second.across * sign;
+        if (length(first.across) > 0 && length(second.across) > 0 && length(normal) > 1e-6) {
+          planes.push_back({unit(normal), first.group});
+        }
+      }
+    }
+  }
+  return planes;
 }
 
 std::vector<SeamRay> LocalStar::rays() const {
@@ -170,24 +188,7 @@ std::vector<SeamRay> LocalStar::rays() const {
       }
     }
   }
-  // Planes that bound regions of sites with a common footprint.
-  struct Plane {
-    Vec3d normal;
-    std::size_t group = 0;
-  };
-  std::vector<Plane> planes;
-  for (const Member& first : members_) {
-    for (const DomainSide* side : first.sides) planes.push_back({side->normal, first.group});
-    for (const Member& second : members_) {
-      if (&second <= &first || second.group != first.group) continue;
-      for (const double sign : {1.0, -1.0}) {
-        const Vec3d normal = first.across + second.across * sign;
-        if (length(first.across) > 0 && length(second.across) > 0 && length(normal) > 1e-6) {
-          planes.push_back({unit(normal), first.group});
-        }
-      }
-    }
-  }
+  const std::vector<Plane> planes = planes_of_groups();
   for (const Plane& plane : planes) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (g != plane.group) add_both(cross(plane.normal, groups_[g] - groups_[plane.group]));

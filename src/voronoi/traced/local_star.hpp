@@ -55,6 +55,15 @@ class LocalStar {
   [[nodiscard]] double bend(const Member& member, const Vec3d& direction) const;
 
   [[nodiscard]] std::vector<const Member*> closest_in(const Vec3d& direction, double tolerance) const;
+  /// A plane that bounds regions of sites with a common footprint.
+  struct Plane {
+    Vec3d normal;
+    std::size_t group = 0;
+  };
+  [[nodiscard]] std::vector<Plane> planes_of_groups() const;
+  /// Returns the closest of some sites beside a direction: on the side of `across`, which is at right angles to it.
+  [[nodiscard]] Index site_beside(const std::vector<const Member*>& near, const Vec3d& direction,
+                                  const Vec3d& across) const;
   void add(const Vec3d& direction, std::vector<SeamRay>& rays) const;
 
   const TracedSites& sites_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "voronoi/label_geometry.hpp"
 
@@ -384,118 +385,145 @@ void SeamTracer::end_at_border(Trace& trace) const {
   }
 }
 
-Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
-                        const std::vector<Index>& left) const {
+/// A trace in progress.
+struct SeamTracer::Run {
+  const SeamTracer& tracer;
+  const TracedCurve& curve;
+  const Vec3d start;
+  const std::vector<Index>& left;  ///< closest sites of the start
   Trace out;
-  out.points.push_back(start);
-  Vec3d x = start;
-  Vec3d along = tangent(curve, x);
-  if (dot(along, towards) < 0) along = -along;
-  if (length(along) == 0) return out;
-  const double tolerance = sites_.tolerance();
+  Vec3d x;
+  Vec3d along;
   double way = 0;
-  for (int k = 0; k < most_steps; ++k) {
-    const double radius = sites_.distance(curve.sites[0], x);
-    double most = longest_step * std::max(radius, 64 * tolerance);
-    const std::vector<Room> near = rooms(curve, x, along, radius, 2 * most);
-    if (k > 0 || radius > tolerance) {
-      if (const auto v = vertex_ahead(curve, x, along, radius)) {
-        out.points.push_back(sites_.vertices()[*v]);
+  double radius = 0;
+  double most = 0;  ///< longest step
+
+  [[nodiscard]] double tolerance() const { return tracer.sites_.tolerance(); }
+
+  /// Ends the trace at the closest sites of its last point.
+  void end_at(std::vector<Index> found, double there) {
+    out.sites = std::move(found);
+    out.end = out.sites.size() > 1 ? TraceEnd::event : TraceEnd::failed;
+    if (there < touching * tolerance()) tracer.end_at_border(out);
+  }
+
+  /// Returns true if the trace ends at the surface.
+  bool ends_at_surface(bool is_first) {
+    if (!is_first || radius > tolerance()) {
+      if (const auto v = tracer.vertex_ahead(curve, x, along, radius)) {
+        out.points.push_back(tracer.sites_.vertices()[*v]);
         out.end = TraceEnd::vertex;
         out.vertex = *v;
-        return out;
+        return true;
       }
     }
-    if (radius < touching * tolerance && dot(sites_.gradient(curve.sites[0], x), along) < 0) {
-      end_at_border(out);
-      return out;
-    }
-    // Events near the start are the junction where the curve starts.
+    if (!(radius < touching * tolerance() && dot(tracer.sites_.gradient(curve.sites[0], x), along) < 0)) return false;
+    tracer.end_at_border(out);
+    return true;
+  }
+
+  /// Returns true if the trace ends where a site becomes as close. Events near the start are the junction there.
+  bool ends_at_event(const std::vector<Room>& near) {
     constexpr std::size_t most_tried = 6;
     for (std::size_t r = 0; r < near.size() && r < most_tried && near[r].step < most; ++r) {
-      const auto found = event_with(curve, near[r].site, x, along, radius);
-      if (!found || length(*found - start) <= 16 * tolerance) continue;
+      const auto found = tracer.event_with(curve, near[r].site, x, along, radius);
+      if (!found || length(*found - start) <= 16 * tolerance()) continue;
       const double size = length(*found - x);
       if (size > 2 * most) continue;
-      const TracedSites::Closest there = sites_.closest(*found, tolerance);
-      if (there.sites == left && length(*found - start) <= sites_.blur(there.radius)) continue;
+      const TracedSites::Closest there = tracer.sites_.closest(*found, tolerance());
+      if (there.sites == left && length(*found - start) <= tracer.sites_.blur(there.radius)) continue;
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
       });
-      if (!is_first && !is_clear(curve, x, *found)) continue;
-      const auto touched = touching_point(curve, near[r].site, *found, radius);
-      const auto met = meeting_point(touched ? *touched : *found, radius);
+      if (!is_first && !tracer.is_clear(curve, x, *found)) continue;
+      const auto touched = tracer.touching_point(curve, near[r].site, *found, radius);
+      const auto met = tracer.meeting_point(touched ? *touched : *found, radius);
       out.points.push_back(met ? *met : touched ? *touched : *found);
-      out.sites = met || touched ? sites_.closest(out.points.back(), tolerance).sites : there.sites;
-      out.end = out.sites.size() > 1 ? TraceEnd::event : TraceEnd::failed;
-      if (there.radius < touching * tolerance) end_at_border(out);
-      return out;
+      end_at(met || touched ? tracer.sites_.closest(out.points.back(), tolerance()).sites : there.sites, there.radius);
+      return true;
     }
-    double step = near.empty() ? most : std::min(most, near.front().step);
-    if (step < 4 * tolerance) {
-      if (way > 64 * tolerance && near.front().step <= 0.25 * tolerance) {
-        // The curve touches a region without a clear crossing.
-        if (const auto touched = touching_point(curve, near.front().site, x, radius)) {
-          x = *touched;
-          out.points.back() = x;
-        }
-        const TracedSites::Closest there = sites_.closest(x, 4 * tolerance);
-        if (there.sites == left && length(x - start) <= sites_.blur(radius)) {
-          step = 0.1 * sites_.blur(radius);
-        } else {
-          out.sites = there.sites;
-          out.end = out.sites.size() > 1 ? TraceEnd::event : TraceEnd::failed;
-          if (there.radius < touching * tolerance) end_at_border(out);
-          return out;
-        }
+    return false;
+  }
+
+  /// Lengthens a step that is too short. Returns nothing if the trace ends, because the curve touches a region without
+  /// a clear crossing.
+  std::optional<double> long_enough(double step, const std::vector<Room>& near) {
+    if (step >= 4 * tolerance()) return step;
+    if (way > 64 * tolerance() && near.front().step <= 0.25 * tolerance()) {
+      if (const auto touched = tracer.touching_point(curve, near.front().site, x, radius)) {
+        x = *touched;
+        out.points.back() = x;
       }
-      step = std::max(step, 4 * tolerance);
-    }
-    std::optional<Vec3d> next;
-    Vec3d turned;
-    // Sites that come close without reaching the curve would make all steps short.
-    const double leap = std::min(0.1 * radius, 32 * step);
-    if (step < 0.5 * leap && way > 64 * tolerance) {
-      next = point_in_plane(curve, x + along * leap, along);
-      if (next && length(*next - x) < 1.5 * leap && is_clear(curve, x, *next) &&
-          sites_.closest(*next, tolerance).sites == curve.sites) {
-        turned = tangent(curve, *next);
-        if (dot(turned, along) < 0) turned = -turned;
-        if (dot(turned, along) > 0.9) {
-          way += length(*next - x);
-          x = *next;
-          along = turned;
-          out.points.push_back(x);
-          continue;
-        }
+      const TracedSites::Closest there = tracer.sites_.closest(x, 4 * tolerance());
+      if (there.sites != left || length(x - start) > tracer.sites_.blur(radius)) {
+        end_at(there.sites, there.radius);
+        return std::nullopt;
       }
-      next.reset();
+      step = 0.1 * tracer.sites_.blur(radius);
     }
-    constexpr int most_halvings = 30;
-    for (int h = 0; h < most_halvings; ++h, step *= 0.5) {
-      next = point_in_plane(curve, x + along * step, along);
-      if (!next || length(*next - x) > 1.5 * step) continue;
-      turned = tangent(curve, *next);
-      if (dot(turned, along) < 0) turned = -turned;
-      if (dot(turned, along) > 0.9) break;
-      next.reset();
-    }
-    if (!next || length(turned) == 0) return out;
+    return std::max(step, 4 * tolerance());
+  }
+
+  /// Goes to a point of the curve, if its direction there is much the same.
+  bool go_to(const std::optional<Vec3d>& next, double step) {
+    constexpr double same_way = 0.9;
+    if (!next || length(*next - x) > 1.5 * step) return false;
+    Vec3d turned = tracer.tangent(curve, *next);
+    if (dot(turned, along) < 0) turned = -turned;
+    if (!(dot(turned, along) > same_way)) return false;
     way += length(*next - x);
     x = *next;
     along = turned;
     out.points.push_back(x);
-    if (way > 4 * length(x - start) && k > 4 && length(x - start) < 2 * step &&
-        dot(along, tangent(curve, start)) != 0) {
-      const Vec3d first = out.points[1] - start;
-      if (dot(first, along) > 0.9 * length(first) && dot(start - x, along) >= 0) {
-        out.points.push_back(start);
-        out.end = TraceEnd::closed;
-        return out;
-      }
-    }
+    return true;
   }
-  return out;
+
+  /// Takes a long step if sites come close without reaching the curve. They would make all steps short.
+  bool leaps(double step) {
+    const double leap = std::min(0.1 * radius, 32 * step);
+    if (!(step < 0.5 * leap && way > 64 * tolerance())) return false;
+    const auto next = tracer.point_in_plane(curve, x + along * leap, along);
+    if (!next || length(*next - x) >= 1.5 * leap || !tracer.is_clear(curve, x, *next)) return false;
+    return tracer.sites_.closest(*next, tolerance()).sites == curve.sites && go_to(next, leap);
+  }
+
+  /// Takes a step, or a shorter one if the curve bends.
+  bool advances(double& step) {
+    constexpr int most_halvings = 30;
+    for (int h = 0; h < most_halvings; ++h, step *= 0.5) {
+      if (go_to(tracer.point_in_plane(curve, x + along * step, along), step)) return true;
+    }
+    return false;
+  }
+
+  /// Returns true if the trace is back at its start.
+  bool is_closed(double step) {
+    if (out.points.size() < 6 || way <= 4 * length(x - start) || length(x - start) >= 2 * step) return false;
+    const Vec3d first = out.points[1] - start;
+    if (!(dot(first, along) > 0.9 * length(first) && dot(start - x, along) >= 0)) return false;
+    out.points.push_back(start);
+    out.end = TraceEnd::closed;
+    return true;
+  }
+};
+
+Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
+                        const std::vector<Index>& left) const {
+  Run run{*this, curve, start, left, {}, start, tangent(curve, start)};
+  run.out.points.push_back(start);
+  if (dot(run.along, towards) < 0) run.along = -run.along;
+  if (length(run.along) == 0) return std::move(run.out);
+  for (int k = 0; k < most_steps; ++k) {
+    run.radius = sites_.distance(curve.sites[0], run.x);
+    run.most = longest_step * std::max(run.radius, 64 * sites_.tolerance());
+    const std::vector<Room> near = rooms(curve, run.x, run.along, run.radius, 2 * run.most);
+    if (run.ends_at_surface(k == 0) || run.ends_at_event(near)) break;
+    std::optional<double> step = run.long_enough(near.empty() ? run.most : std::min(run.most, near.front().step), near);
+    if (!step) break;
+    if (run.leaps(*step)) continue;
+    if (!run.advances(*step) || run.is_closed(*step)) break;
+  }
+  return std::move(run.out);
 }
 
 }  // namespace blum::voronoi

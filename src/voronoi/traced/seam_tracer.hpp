@@ -69,12 +69,12 @@ class SeamTracer {
   /// Returns a curve on which sites are equally close, or nothing if they do not determine one. With fewer than three
   /// footprints, the curve lies in sides of domains.
   /// @param towards  approximate direction of the curve at `at`, a unit vector.
-  [[nodiscard]] std::optional<TracedCurve> curve_of(const std::vector<TracedSites::Index>& sites, const Vec3d& at,
+  [[nodiscard]] std::optional<TracedCurve> curve_of(const std::vector<TracedSites::Index>& found, const Vec3d& at,
                                                     const Vec3d& towards) const;
 
   /// Returns the points in which seams meet a plane near a point, among given sites.
   /// @param reach  largest distance of the points.
-  [[nodiscard]] std::vector<Vec3d> seam_points(const std::vector<TracedSites::Index>& sites, const Vec3d& at,
+  [[nodiscard]] std::vector<Vec3d> seam_points(const std::vector<TracedSites::Index>& near, const Vec3d& at,
                                                const Vec3d& normal, double reach) const;
 
   /// Returns the points equally far from two sites, near one of them. For edges from one vertex, and for parallel
@@ -83,6 +83,7 @@ class SeamTracer {
 
  private:
   struct Room;
+  struct Run;
   [[nodiscard]] std::vector<Room> rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along, double radius,
                                         double most) const;
   [[nodiscard]] std::optional<Vec3d> solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const;

@@ -340,9 +340,8 @@ class Assembly {
       number[a] = out.size();
       out.push_back(structure_.sheets[loops[a].sheet]);
     }
-    for (std::size_t a = 0; a < loops.size(); ++a) {
-      if (loops[a].depth % 2 == 0) continue;
-      out[number[loops[a].parent]].loops.push_back(structure_.sheets[loops[a].sheet].loops[0]);
+    for (const Loop& loop : loops) {
+      if (loop.depth % 2 != 0) out[number[loop.parent]].loops.push_back(structure_.sheets[loop.sheet].loops[0]);
     }
   }
 
@@ -445,7 +444,10 @@ class Assembly {
       std::vector<std::uint32_t> own(corners.size());
       for (std::uint32_t c = 0; c < corners.size(); ++c) {
         const auto [place, is_new] = copy.try_emplace(joined.find(c), static_cast<std::uint32_t>(vertices_.size()));
-        if (is_new) vertices_.push_back(Vertex(vertices_[v]));
+        if (is_new) {
+          const Vertex same = vertices_[v];
+          vertices_.push_back(same);
+        }
         own[c] = place->second;
       }
       for (std::size_t c = 0; c < corners.size(); ++c) triangles_[corners[c].first][corners[c].second] = own[c];
