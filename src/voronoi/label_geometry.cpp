@@ -75,6 +75,13 @@ Vec3d unit(const Vec3d& v) {
   return scaled / length(scaled);
 }
 
+std::array<Vec3d, 2> axes_across(const Vec3d& n) {
+  constexpr double steep = 0.6;
+  const Vec3d other = std::abs(n.x) < steep ? Vec3d{1, 0, 0} : std::abs(n.y) < steep ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  const Vec3d first = unit(cross(n, other));
+  return {first, cross(n, first)};
+}
+
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   std::array<DoubleDouble, 3> u;
   std::array<DoubleDouble, 3> v;

@@ -21,6 +21,10 @@ namespace blum::voronoi {
 /// Returns the unit vector in the direction of `v`, which may have any length except 0.
 [[nodiscard]] Vec3d unit(const Vec3d& v);
 
+/// Returns two unit vectors at right angles to a unit vector n and to each other. The first one, the second one and n
+/// are a right-handed system.
+[[nodiscard]] std::array<Vec3d, 2> axes_across(const Vec3d& n);
+
 /// Returns the unit vector along (b - a) x (c - a). It is accurate even if the three points are nearly collinear.
 [[nodiscard]] Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 

@@ -247,6 +247,8 @@ std::vector<WallTriangle> wall_triangles(const TracedSites& sites, const Complex
   return out;
 }
 
+constexpr const char* wrong_betti = "the traced diagram does not have the expected Betti numbers";
+
 /// Traces the diagram with one effort.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
@@ -273,7 +275,7 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   report.expected = traced_betti(sites, VoronoiPart::all, *solid.betti());
   report.found = homology(all->view(), context);
   timer.lap("homology");
-  if (report.found != report.expected) return "the traced diagram does not have the expected Betti numbers";
+  if (report.found != report.expected) return wrong_betti;
   if (options.part == VoronoiPart::all) {
     out.complex = std::move(*all);
   } else {
@@ -309,8 +311,8 @@ std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSi
   out.report.reflex_edges = sites->count(SiteKind::edge);
   out.report.reflex_vertices = sites->count(SiteKind::vertex);
   std::string problem = trace(solid, table, *sites, TraceEffort::usual, options, timer, out, context);
-  // More walks across sheets may find what is missing.
-  if (!out.report.traced) problem = trace(solid, table, *sites, TraceEffort::full, options, timer, out, context);
+  // More walks across sheets may find what is missing. They do not help against other problems.
+  if (problem == wrong_betti) problem = trace(solid, table, *sites, TraceEffort::full, options, timer, out, context);
   return problem;
 }
 

@@ -1,6 +1,7 @@
 #include "voronoi/traced/local_star.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -55,13 +56,6 @@ std::vector<const LocalStar::Member*> LocalStar::closest_in(const Vec3d& directi
   return out;
 }
 
-TracedSites::Index LocalStar::site_in(const Vec3d& direction) const {
-  const std::vector<const Member*> found = closest_in(direction, 1e-12);
-  if (!found.empty()) return found.front()->site;
-  const std::vector<const Member*> loose = closest_in(direction, angle_tolerance_);
-  return loose.empty() ? members_.front().site : loose.front()->site;
-}
-
 TracedSites::Index LocalStar::site_beside(const std::vector<const Member*>& near, const Vec3d& direction,
                                           const Vec3d& across) const {
   const Vec3d aside = direction + across * 1e-3;
@@ -91,11 +85,9 @@ SeamRay LocalStar::ray(const Vec3d& direction) const {
   for (const Member* member : near) out.sites.push_back(member->site);
   detail::sort_unique(out.sites);
   // Axes across the direction, counterclockwise as seen from its tip.
-  const Vec3d other = std::abs(direction.x) < 0.6   ? Vec3d{1, 0, 0}
-                      : std::abs(direction.y) < 0.6 ? Vec3d{0, 1, 0}
-                                                    : Vec3d{0, 0, 1};
-  const Vec3d right = unit(cross(other, direction));
-  const Vec3d up = cross(direction, right);
+  const std::array<Vec3d, 2> axes = axes_across(direction);
+  const Vec3d right = -axes[0];
+  const Vec3d up = -axes[1];
   std::vector<double> angles;
   const auto add_line = [&](const Vec3d& normal) {
     const double a = dot(normal, right), b = dot(normal, up);

@@ -38,8 +38,6 @@ class LocalStar {
   [[nodiscard]] std::vector<SeamRay> rays() const;
   /// Returns the regions around a direction from the point.
   [[nodiscard]] SeamRay ray(const Vec3d& direction) const;
-  /// Returns the closest site in a direction from the point, the first one of several.
-  [[nodiscard]] TracedSites::Index site_in(const Vec3d& direction) const;
 
  private:
   using Index = TracedSites::Index;

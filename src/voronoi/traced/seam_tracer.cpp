@@ -163,16 +163,12 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
       }
     }
   }
-  const Vec3d other = std::abs(normal.x) < 0.6   ? Vec3d{1, 0, 0}
-                      : std::abs(normal.y) < 0.6 ? Vec3d{0, 1, 0}
-                                                 : Vec3d{0, 0, 1};
-  const Vec3d right = unit(cross(other, normal));
-  const Vec3d up = cross(normal, right);
+  const std::array<Vec3d, 2> axes = axes_across(normal);
   const TracedSurface plane = TracedSurface::plane(normal, at);
   std::vector<Vec3d> out;
   for (std::size_t a = 0; a < surfaces.size(); ++a) {
     for (std::size_t b = a + 1; b < surfaces.size(); ++b) {
-      for (const Vec3d& aside : {Vec3d{}, right, up, -right, -up}) {
+      for (const Vec3d& aside : {Vec3d{}, -axes[0], -axes[1], axes[0], axes[1]}) {
         const auto found = solve({surfaces[a], surfaces[b], plane}, at + aside * (0.2 * reach), reach);
         if (!found || length(*found - at) > reach) continue;
         // Where two sites have one footprint, their surfaces touch instead of crossing, and the point is not precise.

@@ -15,7 +15,7 @@ namespace blum::voronoi {
 /// Distances that count as 0, relative to the size of the solid.
 constexpr double relative_tolerance = 1e-10;
 
-/// Builds the sites. Coordinates are relative to the first vertex.
+/// Builds the sites. Coordinates are relative to the middle of the box.
 class SiteFinder {
  public:
   SiteFinder(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, double flatness)
@@ -23,7 +23,8 @@ class SiteFinder {
 
   std::optional<TracedSites> find() {
     place();
-    if (!add_faces() || !add_edges() || !add_vertices()) return std::nullopt;
+    if (!add_faces() || !add_edges()) return std::nullopt;
+    add_vertices();
     std::vector<Box3> boxes;
     for (TracedSite& site : out_.sites_) {
       detail::sort_unique(site.vertices);
@@ -116,16 +117,8 @@ class SiteFinder {
         }
       }
     }
-    for (TracedSite& face : out_.sites_) set_axes(face);
-    face_count_ = out_.sites_.size();
+    for (TracedSite& face : out_.sites_) face.axes = axes_across(face.direction);
     return true;
-  }
-
-  static void set_axes(TracedSite& face) {
-    const Vec3d& n = face.direction;
-    const Vec3d other = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : std::abs(n.y) < 0.6 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-    face.axes[0] = unit(cross(n, other));
-    face.axes[1] = cross(n, face.axes[0]);
   }
 
   /// Adds the boundaries of faces and the reflex edges.
@@ -177,7 +170,7 @@ class SiteFinder {
   }
 
   /// Adds vertices whose dual cone has an interior inside the solid.
-  bool add_vertices() {
+  void add_vertices() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> at;
     for (std::uint32_t k = 0; k < out_.edges_.size(); ++k) {
       for (const std::uint32_t v : out_.edges_[k].vertices) at[v].push_back(k);
@@ -190,7 +183,6 @@ class SiteFinder {
       }
       add_vertex(v, list, directions);
     }
-    return true;
   }
 
   void add_vertex(std::uint32_t v, const std::vector<std::uint32_t>& list, const std::vector<Vec3d>& directions) {
@@ -244,7 +236,6 @@ class SiteFinder {
   const PolyhedronSites& sites_;
   const double flatness_;
   std::vector<bool> is_flat_;
-  std::size_t face_count_ = 0;
   TracedSites out_;
 };
 
@@ -339,21 +330,18 @@ double TracedSites::least_distance(Index i, const Vec3d& x) const {
 const DomainSide* TracedSites::side_between(Index first, Index second) const {
   const TracedSite* large = &sites_[first];
   const TracedSite* small = &sites_[second];
-  const auto rank = [](const TracedSite& site) {
-    return site.kind == SiteKind::face ? 2 : site.kind == SiteKind::edge ? 1 : 0;
-  };
-  if (rank(*large) < rank(*small)) std::swap(large, small);
+  if (large->kind < small->kind) std::swap(large, small);
   const auto has = [](const TracedSite& site, std::uint32_t v) {
     return std::binary_search(site.vertices.begin(), site.vertices.end(), v);
   };
-  if (rank(*large) == 2 && rank(*small) == 1) {
+  if (large->kind == SiteKind::face && small->kind == SiteKind::edge) {
     const BorderEdge& edge = edges_[small->border];
     for (const std::size_t k : {0U, 1U}) {
       if (&sites_[edge.faces[k]] == large) return &small->sides[k];
     }
     return nullptr;
   }
-  if (rank(*large) == 1 && rank(*small) == 0) {
+  if (large->kind == SiteKind::edge && small->kind == SiteKind::vertex) {
     const std::uint32_t v = small->vertices[0];
     if (!has(*large, v)) return nullptr;
     const auto towards =
@@ -362,7 +350,7 @@ const DomainSide* TracedSites::side_between(Index first, Index second) const {
         });
     return &*towards;
   }
-  if (rank(*large) != 1 || rank(*small) != 1) return nullptr;
+  if (large->kind != SiteKind::edge || small->kind != SiteKind::edge) return nullptr;
   constexpr double parallel = 1e-7;
   if (length(cross(large->direction, small->direction)) > parallel) return nullptr;
   for (const std::uint32_t v : small->vertices) {

@@ -24,18 +24,10 @@ double touching_radius(const TracedSite& site, const Vec3d& p, const Vec3d& w) {
 WallMap::WallMap(const TracedSites& sites, TracedSites::Index first, TracedSites::Index second,
                  std::optional<Vec3d> normal, std::span<const Vec3d> sample)
     : sites_(sites), from_(first), to_(second), is_planar_(normal.has_value()), origin_(sample[0]) {
-  const auto rank = [&](TracedSites::Index i) {
-    return sites_[i].kind == SiteKind::face ? 0 : sites_[i].kind == SiteKind::edge ? 1 : 2;
-  };
-  if (rank(to_) < rank(from_)) std::swap(from_, to_);
-  const auto set_axes = [&](const Vec3d& n) {
-    const Vec3d other = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : std::abs(n.y) < 0.6 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-    axes_[0] = unit(cross(n, other));
-    axes_[1] = cross(n, axes_[0]);
-  };
+  if (sites_[from_].kind < sites_[to_].kind) std::swap(from_, to_);
   const TracedSite& site = sites_[from_];
   if (is_planar_) {
-    set_axes(*normal);
+    axes_ = axes_across(*normal);
   } else if (site.kind == SiteKind::face) {
     origin_ = site.point;
     axes_ = site.axes;

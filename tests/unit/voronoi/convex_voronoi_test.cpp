@@ -26,6 +26,7 @@
 #include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "blum/voronoi/voronoi_sites.hpp"
+#include "support/double_cone.hpp"
 #include "support/mesh_places.hpp"
 #include "support/random_transform.hpp"
 
@@ -363,22 +364,6 @@ TriangleMesh arch(std::uint32_t strips, double height) {
   return mesh;
 }
 
-/// Double cone over a regular polygon.
-TriangleMesh double_cone(std::uint32_t sides) {
-  TriangleMesh mesh;
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    const double angle = 2 * std::numbers::pi * k / sides;
-    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0});
-  }
-  mesh.vertices.push_back({0, 0, 1});
-  mesh.vertices.push_back({0, 0, -1});
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    mesh.triangles.push_back({k, (k + 1) % sides, sides});
-    mesh.triangles.push_back({(k + 1) % sides, k, sides + 1});
-  }
-  return mesh;
-}
-
 /// Prism over a regular polygon. Its ends are fans of needles around a corner.
 TriangleMesh fan_prism(std::uint32_t sides) {
   TriangleMesh mesh;
@@ -508,7 +493,7 @@ TEST(ConvexVoronoi, RequestsToStopEndTheWork) {
     asked = std::chrono::steady_clock::now();
     stop.request_stop();
   });
-  EXPECT_THROW((void)voronoi_complex(double_cone(5000), {}, {.cancel = stop.get_token()}), Cancelled);
+  EXPECT_THROW((void)voronoi_complex(test::double_cone(5000), {}, {.cancel = stop.get_token()}), Cancelled);
   const auto ended = std::chrono::steady_clock::now();
   later.join();
   EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), 0.2);

@@ -8,7 +8,6 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -19,6 +18,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
+#include "support/double_cone.hpp"
 #include "voronoi/planes/plane_tree.hpp"
 
 namespace blum::voronoi {
@@ -26,22 +26,6 @@ namespace {
 
 using Float = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>>;
 using Index = HalfSpaces::Index;
-
-/// Double cone over a regular polygon: its planes meet in two points.
-TriangleMesh double_cone(std::uint32_t sides) {
-  TriangleMesh mesh;
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    const double angle = 2 * std::numbers::pi * k / sides;
-    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0});
-  }
-  mesh.vertices.push_back({0, 0, 1});
-  mesh.vertices.push_back({0, 0, -1});
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    mesh.triangles.push_back({k, (k + 1) % sides, sides});
-    mesh.triangles.push_back({(k + 1) % sides, k, sides + 1});
-  }
-  return mesh;
-}
 
 ConvexFaces faces_of(const TriangleMesh& mesh) {
   const SiteTable table(mesh);
@@ -63,7 +47,7 @@ std::vector<Named> solids() {
   out.push_back({"Box", faces_of(make_box())});
   out.push_back({"Cylinder", faces_of(make_cylinder({.sides = 64}))});
   out.push_back({"Sphere", faces_of(make_sphere({.frequency = 6}))});
-  out.push_back({"DoubleCone", faces_of(double_cone(150))});
+  out.push_back({"DoubleCone", faces_of(test::double_cone(150))});
   return out;
 }
 
@@ -203,7 +187,7 @@ TEST(PlaneRegions, VerticesListAllPlanesThatTheyTouch) {
 }
 
 TEST(PlaneRegions, OfADoubleConeMeetAtBothEnds) {
-  const ConvexFaces faces = faces_of(double_cone(150));
+  const ConvexFaces faces = faces_of(test::double_cone(150));
   std::size_t ends = 0;
   for (const PlaneCorner& corner : corners_of(faces)) ends += corner.planes.size() == 151 ? 1 : 0;
   EXPECT_EQ(ends, 2U);
