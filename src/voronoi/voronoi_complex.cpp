@@ -300,11 +300,12 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
 }
 
 /// Traces the diagram.
-/// @param flatness  triangles whose corners lie within this distance of one plane are one face, mesh units.
+/// @param flatness  triangles whose corners lie within twice this distance of one plane are one face, mesh units.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, double flatness,
-                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
-  const std::optional<TracedSites> sites = TracedSites::of(solid.surface().mesh, table, exact, flatness);
+                  TracedPlaces places, const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out,
+                  const Context& context) {
+  const std::optional<TracedSites> sites = TracedSites::of(solid.surface().mesh, table, exact, flatness, places);
   timer.lap("sites");
   if (!sites) return "joined triangles are not flat";
   out.report.flatness = flatness;
@@ -314,6 +315,23 @@ std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSi
   // More walks across sheets may find what is missing. They do not help against other problems.
   if (problem == wrong_betti) problem = trace(solid, table, *sites, TraceEffort::full, options, timer, out, context);
   return problem;
+}
+
+/// Traces the diagram in several ways, until one succeeds. Merged places have the structure of symmetric solids. Where
+/// coordinates are rounded, symmetry is broken, and separate places may succeed.
+void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, const VoronoiOptions& options,
+           PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+  const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(solid.surface().mesh);
+  std::vector<std::pair<double, TracedPlaces>> ways{{flatness, TracedPlaces::merged},
+                                                    {flatness, TracedPlaces::separate}};
+  if (flatness > 0) ways.emplace_back(0.0, TracedPlaces::separate);
+  std::string first;
+  for (const auto& [own, places] : ways) {
+    const std::string problem = trace(solid, table, exact, own, places, options, timer, out, context);
+    if (out.report.traced) return;
+    if (first.empty()) first = problem;
+  }
+  out.report.trace_problem = first;
 }
 
 /// @param phases  phases that were already completed.
@@ -336,12 +354,7 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
     }
   }
   if (options.method == VoronoiMethod::traced) {
-    const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(mesh);
-    report.trace_problem = trace(solid, table, sites, flatness, options, timer, out, context);
-    if (!report.traced && flatness > 0) {
-      const std::string problem = trace(solid, table, sites, 0, options, timer, out, context);
-      if (report.traced) report.trace_problem = problem;
-    }
+    trace(solid, table, sites, options, timer, out, context);
     if (report.traced) return out;
   }
   const VoronoiSolid sited(mesh, table, std::move(sites), options.part);

@@ -10,18 +10,13 @@
 #include "voronoi/label_geometry.hpp"
 
 namespace blum::voronoi {
-namespace {
-
-constexpr double least_angle_tolerance = 1e-6;
-
-}  // namespace
 
 LocalStar::LocalStar(const TracedSites& sites, const Vec3d& at, const std::vector<Index>& found)
     : sites_(sites), at_(at) {
   double radius = 0;
   for (const Index i : found) radius = std::max(radius, sites_.distance(i, at_));
   const double tolerance = 8 * sites_.tolerance();
-  angle_tolerance_ = std::max(least_angle_tolerance, 4 * tolerance / std::max(radius, tolerance));
+  angle_tolerance_ = std::max(sites_.precision().angle, 4 * tolerance / std::max(radius, tolerance));
   for (const Index i : found) {
     Member member{i, sites_.gradient(i, at_), 0, sites_.sides_at(i, at_, tolerance), {}};
     if (sites_[i].kind == SiteKind::edge) member.across = cross(sites_[i].direction, member.gradient);
@@ -133,9 +128,8 @@ SeamRay LocalStar::ray(const Vec3d& direction) const {
 void LocalStar::add(const Vec3d& direction, std::vector<SeamRay>& rays) const {
   if (!(length(direction) > 1e-9)) return;
   const Vec3d h = unit(direction);
-  constexpr double same = 1e-5;
   for (const SeamRay& known : rays) {
-    if (length(known.direction - h) < std::max(same, 2 * angle_tolerance_)) return;
+    if (length(known.direction - h) < std::max(sites_.precision().direction, 2 * angle_tolerance_)) return;
   }
   SeamRay found = ray(h);
   if (found.ring.germs.size() > 2) rays.push_back(std::move(found));

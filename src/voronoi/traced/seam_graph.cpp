@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 
@@ -208,7 +209,7 @@ void SeamGraph::add_closed(const Vec3d& at, const LeavingSeam& seam, const Trace
 /// Returns the junction at a place. Where curves touch, places are less precise, so the same sites within a larger
 /// distance are the same junction.
 std::uint32_t SeamGraph::find_junction(const Vec3d& at, const std::vector<Index>& found) const {
-  const double distance = 16 * sites_.tolerance();
+  const double distance = sites_.precision().apart;
   const double larger = std::max(distance, sites_.blur(sites_.distance(found[0], at)));
   const auto end = junctions_by_x_.upper_bound(at.x + larger);
   for (auto it = junctions_by_x_.lower_bound(at.x - larger); it != end; ++it) {
@@ -290,13 +291,16 @@ void SeamGraph::add_traced(const RayId& from, Traced traced) {
 /// Marks the ray of a junction along which a curve arrives.
 void SeamGraph::take_ray(std::uint32_t junction, Curve& curve, std::uint32_t number) {
   Ray* best = nullptr;
-  double most = 0;
+  double most = -std::numeric_limits<double>::infinity();
   for (Ray& ray : rays_[junction]) {
+    if (ray.curve != none) continue;
+    // Several seams may have this tangent. Those between the same sites come first: if junctions are very close, a seam
+    // has turned before its direction can be measured.
     constexpr double same_way = 0.99;
+    const bool has_same_sites = ray.seam.ray.sites == curve.curve.sites;
     const double cosine = dot(ray.seam.ray.direction, curve.directions[1]);
-    if (ray.curve != none || cosine < same_way) continue;
-    // Several seams may have this tangent. The one between the same sites comes first.
-    const double score = cosine + (ray.seam.ray.sites == curve.curve.sites ? 1 : 0);
+    if (!has_same_sites && cosine < same_way) continue;
+    const double score = cosine + (has_same_sites ? 4 : 0);
     if (score <= most) continue;
     most = score;
     best = &ray;

@@ -14,7 +14,7 @@ using Index = TracedSites::Index;
 
 bool has_three_footprints(const TracedSites& sites, const Vec3d& at, const std::vector<Index>& found) {
   if (found.size() != 3) return false;
-  constexpr double least = 1e-5;
+  constexpr double least = 1e-8;
   const auto apart = [&](std::size_t a, std::size_t b) {
     return length(sites.gradient(found[a], at) - sites.gradient(found[b], at)) > least;
   };
@@ -57,8 +57,9 @@ std::vector<LeavingSeam> leaving_seams(const TracedSites& sites, const SeamTrace
     }
     // Seams that part by the square of the step must be clearly apart.
     double step = std::clamp(8 * std::sqrt(sites.tolerance() * radius), 0.02 * radius, 0.25 * radius);
-    constexpr int most_tries = 8;
-    for (int k = 0; k < most_tries; ++k, step *= 0.25) {
+    // Seams between junctions that are very close are short.
+    constexpr int least_tries = 8;
+    for (int k = 0; k < least_tries || step > 64 * sites.tolerance(); ++k, step *= 0.25) {
       std::vector<LeavingSeam> seams = seams_in_plane(sites, tracer, at, ray, step);
       if (seams.empty()) continue;
       std::move(seams.begin(), seams.end(), std::back_inserter(out));

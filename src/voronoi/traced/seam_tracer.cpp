@@ -113,7 +113,7 @@ std::optional<TracedCurve> SeamTracer::curve_of(const std::vector<Index>& found,
   curve.sites = found;
   // The two surfaces are those that determine the direction best.
   std::vector<TracedSurface> surfaces;
-  constexpr double same_foot = 1e-7;
+  constexpr double same_foot = 1e-9;
   std::vector<Vec3d> gradients;
   for (std::size_t a = 0; a < found.size(); ++a) {
     const Vec3d own = sites_.gradient(found[a], at);
@@ -175,7 +175,7 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
         constexpr double least_angle = 1e-4;
         const Vec3d first = slope(surfaces[a], *found), second = slope(surfaces[b], *found);
         if (length(cross(first, second)) < least_angle * length(first) * length(second)) continue;
-        if (length(first) < 1e-6 || length(second) < 1e-6) continue;
+        if (length(first) < 1e-9 || length(second) < 1e-9) continue;
         const bool is_known = std::any_of(
             out.begin(), out.end(), [&](const Vec3d& p) { return length(p - *found) <= 16 * sites_.tolerance(); });
         if (!is_known) out.push_back(*found);
@@ -189,27 +189,37 @@ std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const 
                                                 double radius, double most) const {
   std::vector<Room> out;
   const double reach = radius + 2 * most;
-  // Second derivatives of distances along the curve are a few times its curvature.
-  const double bend = 8 / std::max(radius, sites_.tolerance());
+  // Between faces, the curve is straight and its own distance changes evenly. The distance of a site is convex there.
+  const bool is_straight = std::all_of(curve.sites.begin(), curve.sites.end(),
+                                       [&](Index i) { return sites_[i].kind == SiteKind::face; });
+  // Otherwise, second derivatives of distances along the curve are a few times its curvature.
+  const double bend = is_straight ? 0 : 8 / std::max(radius, sites_.tolerance());
   // Returns the first positive root of a + b s - bend/2 s^2.
-  const auto root = [&](double a, double b) { return (b + std::sqrt(b * b + 2 * bend * a)) / bend; };
+  const auto root = [&](double a, double b) {
+    if (bend > 0) return (b + std::sqrt(b * b + 2 * bend * a)) / bend;
+    return b < 0 ? a / -b : std::numeric_limits<double>::infinity();
+  };
+  const double own_rate = dot(sites_.gradient(curve.sites[0], x), along);
   sites_.for_each_within(x, reach, [&](Index i) {
     if (contains(curve.sites, i)) return;
     const TracedSite& site = sites_[i];
     const double beyond = sites_.outside(i, x);
     if (beyond >= most) return;
-    const double gap = sites_.least_distance(i, x) - radius;
-    double step = std::max(gap / 2, beyond);
+    double step = std::max((sites_.least_distance(i, x) - radius) / 2, beyond);
     if (beyond > 0 && site.kind != SiteKind::face) {
       for (const DomainSide& side : site.sides) {
         const double height = -side.height(x);
         if (height > 0) step = std::max(step, std::min(root(height, -dot(side.normal, along)), most));
       }
     }
-    if (beyond == 0 && gap > 0) {
-      const double rate = dot(sites_.gradient(i, x) - sites_.gradient(curve.sites[0], x), along);
-      step = std::max(step, root(gap, rate));
+    if (beyond > 0 && site.kind == SiteKind::face) {
+      const TracedSites::OutsideSide outside = sites_.outside_side(i, x);
+      const double height = std::max(-outside.side->height(x), 0.0);
+      step = std::max(step, std::min({root(height, -dot(outside.side->normal, along)), outside.others, most}));
     }
+    // The line or plane of a site is not farther than the site.
+    const double gap = sites_.distance(i, x) - radius;
+    if (gap > 0) step = std::max(step, std::min(root(gap, dot(sites_.gradient(i, x), along) - own_rate), most));
     if (step < most) out.push_back({std::max(step, 0.0), i});
   });
   std::sort(out.begin(), out.end(), [](const Room& a, const Room& b) { return a.step < b.step; });
@@ -396,8 +406,26 @@ struct SeamTracer::Run {
 
   [[nodiscard]] double tolerance() const { return tracer.sites_.tolerance(); }
 
+  /// Returns true if all sites meet at one edge of the polyhedron: its faces, and the edge itself if it is reflex. They
+  /// are equally close only there, but differ by less than the tolerance near an edge that is nearly flat.
+  [[nodiscard]] bool meet_at_edge(const std::vector<Index>& found) const {
+    return std::any_of(found.begin(), found.end(), [&](Index i) {
+      const TracedSite& site = tracer.sites_[i];
+      if (site.kind != SiteKind::edge) return false;
+      const BorderEdge& edge = tracer.sites_.edges()[site.border];
+      return std::all_of(found.begin(), found.end(),
+                         [&](Index k) { return k == i || k == edge.faces[0] || k == edge.faces[1]; }) &&
+             contains(found, edge.faces[0]) && contains(found, edge.faces[1]);
+    });
+  }
+
   /// Ends the trace at the closest sites of its last point.
   void end_at(std::vector<Index> found, double there) {
+    if (meet_at_edge(found)) {
+      out.points.back() = tracer.sites_.foot(found[0], out.points.back());
+      out.end = TraceEnd::border;
+      return;
+    }
     out.sites = std::move(found);
     out.end = out.sites.size() > 1 ? TraceEnd::event : TraceEnd::failed;
     if (there < touching * tolerance()) tracer.end_at_border(out);
@@ -418,12 +446,32 @@ struct SeamTracer::Run {
     return true;
   }
 
+  /// Moves the last point to where a curve touches the region of a site, or where all near sites meet, if these places
+  /// are known more precisely and are events of this curve.
+  /// @param found  the closest sites of the last point.
+  /// @return the closest sites of the point.
+  std::vector<Index> refined(Index site, const std::vector<Index>& found) {
+    const Vec3d at = out.points.back();
+    const auto touched = tracer.touching_point(curve, site, at, radius);
+    const auto met = tracer.meeting_point(touched ? *touched : at, radius);
+    for (const std::optional<Vec3d>& place : {met, touched}) {
+      if (!place) continue;
+      std::vector<Index> there = tracer.sites_.closest(*place, tolerance()).sites;
+      if (!std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end())) continue;
+      out.points.back() = *place;
+      return there;
+    }
+    return found;
+  }
+
   /// Returns true if the trace ends where a site becomes as close. Events near the start are the junction there.
   bool ends_at_event(const std::vector<Room>& near) {
     constexpr std::size_t most_tried = 6;
-    for (std::size_t r = 0; r < near.size() && r < most_tried && near[r].step < most; ++r) {
+    // A step must not end at an event: it would then lie behind.
+    const double ahead = 1.0625 * most;
+    for (std::size_t r = 0; r < near.size() && r < most_tried && near[r].step < ahead; ++r) {
       const auto found = tracer.event_with(curve, near[r].site, x, along, radius);
-      if (!found || length(*found - start) <= 16 * tolerance()) continue;
+      if (!found || length(*found - start) <= tracer.sites_.precision().apart) continue;
       const double size = length(*found - x);
       if (size > 2 * most) continue;
       const TracedSites::Closest there = tracer.sites_.closest(*found, tolerance());
@@ -432,10 +480,8 @@ struct SeamTracer::Run {
         return room.step >= size || contains(there.sites, room.site);
       });
       if (!is_first && !tracer.is_clear(curve, x, *found)) continue;
-      const auto touched = tracer.touching_point(curve, near[r].site, *found, radius);
-      const auto met = tracer.meeting_point(touched ? *touched : *found, radius);
-      out.points.push_back(met ? *met : touched ? *touched : *found);
-      end_at(met || touched ? tracer.sites_.closest(out.points.back(), tolerance()).sites : there.sites, there.radius);
+      out.points.push_back(*found);
+      end_at(refined(near[r].site, there.sites), there.radius);
       return true;
     }
     return false;

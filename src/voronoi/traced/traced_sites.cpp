@@ -9,17 +9,31 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "voronoi/label_geometry.hpp"
+#include "voronoi/traced/planar_faces.hpp"
 
 namespace blum::voronoi {
 
-/// Distances that count as 0, relative to the size of the solid.
-constexpr double relative_tolerance = 1e-10;
+/// Returns the differences that count as 0.
+/// @param flatness  of joined triangles that stay where they are; otherwise 0.
+TracePrecision precision_of(const Box3& box, double flatness, TracedPlaces places) {
+  // Tolerances are relative to the size of the solid. Coordinates far from the origin have larger rounding errors.
+  const auto tolerance = [&](double relative, double rounding) {
+    return std::max({relative * box.diagonal(), rounding * box.largest_coordinate(), 4 * flatness});
+  };
+  if (places == TracedPlaces::merged) {
+    const double distance = tolerance(1e-10, 0x1p-47);
+    return {distance, 16 * distance, 1e-6, 1e-5};
+  }
+  const double distance = tolerance(1e-13, 0x1p-50);
+  return {distance, 16 * distance, 1e-13, 1e-10};
+}
 
 /// Builds the sites. Coordinates are relative to the middle of the box.
 class SiteFinder {
  public:
-  SiteFinder(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, double flatness)
-      : mesh_(mesh), table_(table), sites_(sites), flatness_(flatness) {}
+  SiteFinder(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, double flatness,
+             TracedPlaces places)
+      : mesh_(mesh), table_(table), sites_(sites), flatness_(flatness), places_(places) {}
 
   std::optional<TracedSites> find() {
     place();
@@ -41,7 +55,8 @@ class SiteFinder {
   void place() {
     const Box3 box = bounds(mesh_);
     out_.extent_ = box.diagonal();
-    out_.tolerance_ = std::max({relative_tolerance * out_.extent_, 4 * flatness_, 0x1p-47 * box.largest_coordinate()});
+    const bool moves = places_ == TracedPlaces::separate;
+    out_.precision_ = precision_of(box, moves ? 0 : flatness_, places_);
     out_.origin_ = box.center();
     for (const Vec3d& p : mesh_.vertices) out_.vertices_.push_back(p - out_.origin_);
   }
@@ -51,73 +66,55 @@ class SiteFinder {
     return {out_.vertices_[a], out_.vertices_[b], out_.vertices_[c]};
   }
 
-  [[nodiscard]] std::uint32_t apex(std::uint32_t t, const Segment& ends) const {
-    for (const std::uint32_t v : mesh_.triangles[t]) {
-      if (v != ends[0] && v != ends[1]) return v;
+  /// Moves vertices so that joined faces are flat.
+  /// @return false if they stay bent, or triangles turn around.
+  bool flatten(const JoinedTriangles& joined) {
+    const std::vector<Vec3d> before = out_.vertices_;
+    const double left = flatten_faces(mesh_, joined, out_.vertices_);
+    if (!(left <= 0.1 * out_.precision_.distance)) return false;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+      out_.moved_ = std::max(out_.moved_, length(before[v] - out_.vertices_[v]));
     }
-    return ends[0];
+    return std::all_of(mesh_.triangles.begin(), mesh_.triangles.end(), [&](const Triangle& t) {
+      const auto normal = [&](const std::vector<Vec3d>& at) {
+        return cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]);
+      };
+      return dot(normal(before), normal(out_.vertices_)) > 0;
+    });
   }
 
-  /// Returns true if the two triangles of an edge lie in one plane.
-  [[nodiscard]] bool is_flat(std::uint32_t edge) const {
-    if (sites_.turn[edge] == EdgeTurn::flat) return true;
-    if (flatness_ == 0) return false;
-    const auto [first, second] = sites_.triangles_of[edge];
-    const auto height = [&](std::uint32_t of, std::uint32_t above) {
-      const auto [a, b, c] = corners_of(above);
-      const Vec3d normal = unit_normal(a, b, c);
-      return std::abs(dot(normal, out_.vertices_[apex(of, table_.edges()[edge])] - a));
-    };
-    const auto normal_of = [&](std::uint32_t t) {
-      const auto [a, b, c] = corners_of(t);
-      return unit_normal(a, b, c);
-    };
-    return std::min(height(first, second), height(second, first)) <= flatness_ &&
-           dot(normal_of(first), normal_of(second)) > 0;
-  }
-
+  /// Joins triangles to faces. Moves the vertices so that these are flat, if that is asked for.
   bool add_faces() {
+    JoinedTriangles joined = join_flat_triangles(mesh_, out_.vertices_, table_, sites_, flatness_);
+    is_flat_ = std::move(joined.is_flat);
+    if (places_ == TracedPlaces::separate && !flatten(joined)) return false;
     const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-    detail::UnionFind joined(count);
-    is_flat_.resize(table_.edge_count());
-    for (std::uint32_t e = 0; e < is_flat_.size(); ++e) {
-      is_flat_[e] = is_flat(e);
-      if (is_flat_[e]) joined.join(sites_.triangles_of[e][0], sites_.triangles_of[e][1]);
-    }
     out_.face_of_.assign(count, none);
-    std::vector<double> largest;
     for (std::uint32_t t = 0; t < count; ++t) {
-      const std::uint32_t root = joined.find(t);
+      const std::uint32_t root = joined.face_of[t];
       if (out_.face_of_[root] == none) {
         out_.face_of_[root] = static_cast<Index>(out_.sites_.size());
         TracedSite& face = out_.sites_.emplace_back();
         face.number = static_cast<std::int32_t>(sites_.face_of[t]);
         face.triangle_or_element = t;
-        largest.push_back(0);
       }
       const Index own = out_.face_of_[t] = out_.face_of_[root];
       TracedSite& face = out_.sites_[own];
       face.number = std::min(face.number, static_cast<std::int32_t>(sites_.face_of[t]));
       const auto [a, b, c] = corners_of(t);
-      const double area = length(cross(b - a, c - a));
+      const Vec3d normal = cross(c - a, b - a);
       for (const std::uint32_t v : mesh_.triangles[t]) {
         face.vertices.push_back(v);
         face.box.extend(out_.vertices_[v]);
       }
-      if (area <= largest[own]) continue;
-      largest[own] = area;
+      if (squared_length(normal) <= squared_length(face.direction)) continue;
       face.point = a;
-      face.direction = -unit_normal(a, b, c);
+      face.direction = normal;
     }
-    for (std::uint32_t t = 0; t < count; ++t) {
-      const TracedSite& face = out_.sites_[out_.face_of_[t]];
-      for (const std::uint32_t v : mesh_.triangles[t]) {
-        if (std::abs(dot(face.direction, out_.vertices_[v] - face.point)) > 4 * flatness_ + 1e-13 * out_.extent_) {
-          return false;
-        }
-      }
+    for (TracedSite& face : out_.sites_) {
+      face.direction = unit(face.direction);
+      face.axes = axes_across(face.direction);
     }
-    for (TracedSite& face : out_.sites_) face.axes = axes_across(face.direction);
     return true;
   }
 
@@ -235,13 +232,14 @@ class SiteFinder {
   const SiteTable& table_;
   const PolyhedronSites& sites_;
   const double flatness_;
+  const TracedPlaces places_;
   std::vector<bool> is_flat_;
   TracedSites out_;
 };
 
 std::optional<TracedSites> TracedSites::of(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                                           double flatness) {
-  return SiteFinder(mesh, table, sites, flatness).find();
+                                           double flatness, TracedPlaces places) {
+  return SiteFinder(mesh, table, sites, flatness, places).find();
 }
 
 std::size_t TracedSites::count(SiteKind kind) const {
@@ -315,6 +313,32 @@ double TracedSites::outside(Index i, const Vec3d& x) const {
   double most = 0;
   for (const DomainSide& side : site.sides) most = std::max(most, -side.height(x));
   return most;
+}
+
+TracedSites::OutsideSide TracedSites::outside_side(Index i, const Vec3d& x) const {
+  const TracedSite& face = sites_[i];
+  const double px = dot(face.axes[0], x - face.point);
+  const double py = dot(face.axes[1], x - face.point);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  OutsideSide out;
+  double least = infinite, second = infinite;  // squared
+  for (const DomainSide& side : face.sides) {
+    const double ax = side.from[0] - px, ay = side.from[1] - py;
+    const double bx = side.to[0] - px, by = side.to[1] - py;
+    const double dx = bx - ax, dy = by - ay;
+    const double t = std::clamp(-(ax * dx + ay * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+    const double qx = ax + t * dx, qy = ay + t * dy;
+    const double squared = qx * qx + qy * qy;
+    if (squared < least) {
+      second = least;
+      least = squared;
+      out.side = &side;
+    } else {
+      second = std::min(second, squared);
+    }
+  }
+  out.others = std::sqrt(second);
+  return out;
 }
 
 double TracedSites::least_distance(Index i, const Vec3d& x) const {

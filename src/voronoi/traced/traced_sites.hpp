@@ -51,15 +51,29 @@ struct BorderEdge {
   [[nodiscard]] bool is_reflex() const { return own != 0xffffffff; }
 };
 
+/// How places that are nearly the same are treated.
+enum class TracedPlaces : std::uint8_t {
+  merged,   ///< Junctions and seams closer than the tolerance are one. Symmetric solids have such ones.
+  separate  ///< Only rounding of numbers counts as 0. Vertices move so that joined faces are flat.
+};
+
+/// Differences that count as 0.
+struct TracePrecision {
+  double distance = 0;   ///< mesh units
+  double apart = 0;      ///< of two junctions, mesh units
+  double angle = 0;      ///< between gradients, radians
+  double direction = 0;  ///< between seams that leave a junction: difference of unit vectors
+};
+
 /// The sites of a polyhedron, and the functions of their distances. Coordinates are relative to origin().
 class TracedSites {
  public:
   using Index = std::uint32_t;
 
-  /// Returns nothing if joined triangles are not flat, or a vertex is not simple enough.
-  /// @param flatness  triangles whose corners lie within this distance of one plane are one face, mesh units.
+  /// Returns nothing if joined triangles cannot be made flat.
+  /// @param flatness  triangles whose corners lie within twice this distance of one plane are one face, mesh units.
   static std::optional<TracedSites> of(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                                       double flatness);
+                                       double flatness, TracedPlaces places);
 
   [[nodiscard]] const std::vector<TracedSite>& all() const { return sites_; }
   [[nodiscard]] const TracedSite& operator[](Index i) const { return sites_[i]; }
@@ -77,11 +91,14 @@ class TracedSites {
   /// Returns the diagonal of the box around the solid.
   [[nodiscard]] double extent() const { return extent_; }
   /// Distances below this value, in mesh units, count as 0.
-  [[nodiscard]] double tolerance() const { return tolerance_; }
+  [[nodiscard]] double tolerance() const { return precision_.distance; }
+  [[nodiscard]] const TracePrecision& precision() const { return precision_; }
+  /// Returns the largest distance that a vertex moved so that faces are flat, mesh units.
+  [[nodiscard]] double moved() const { return moved_; }
 
   /// Returns the distance within which the place is unknown where a curve touches a region: there, distances differ by
   /// the square of the way.
-  [[nodiscard]] double blur(double radius) const { return 4 * std::sqrt(tolerance_ * radius); }
+  [[nodiscard]] double blur(double radius) const { return 4 * std::sqrt(precision_.distance * radius); }
 
   /// Returns the distance of x from the plane, line or point of a site. It is negative behind a face.
   [[nodiscard]] double distance(Index i, const Vec3d& x) const;
@@ -91,6 +108,14 @@ class TracedSites {
   [[nodiscard]] Vec3d gradient(Index i, const Vec3d& x) const;
   /// Returns how far x lies outside of the domain of a site at least; 0 inside.
   [[nodiscard]] double outside(Index i, const Vec3d& x) const;
+  /// The side of a face beyond which a point lies.
+  struct OutsideSide {
+    const DomainSide* side = nullptr;
+    double others = 0;  ///< distance from the other sides of the face, within its plane
+  };
+  /// Returns the closest side of a face.
+  /// @param x  its projection lies outside of the face.
+  [[nodiscard]] OutsideSide outside_side(Index i, const Vec3d& x) const;
   /// Returns the distance of x from the site itself, or a lower bound on it.
   [[nodiscard]] double least_distance(Index i, const Vec3d& x) const;
   /// Returns the sides of a site's domain that contain x, within a tolerance.
@@ -129,7 +154,8 @@ class TracedSites {
   std::optional<BoxBvh> boxes_;
   Vec3d origin_;
   double extent_ = 0;
-  double tolerance_ = 0;
+  TracePrecision precision_;
+  double moved_ = 0;
 };
 
 }  // namespace blum::voronoi

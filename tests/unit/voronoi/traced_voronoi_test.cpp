@@ -49,7 +49,7 @@ Counts counts_of(const TriangleMesh& mesh) {
 
 TracedSites sites_of(const TriangleMesh& mesh) {
   const SiteTable table(mesh);
-  return *TracedSites::of(mesh, table, polyhedron_sites(mesh, table), 0);
+  return *TracedSites::of(mesh, table, polyhedron_sites(mesh, table), 0, TracedPlaces::merged);
 }
 
 /// Let a profile have n sides, r reflex corners, A arcs and N nodes. A long prism over it has 2 (n + r) + A sheets,
