@@ -254,7 +254,7 @@ constexpr const char* wrong_betti = "the traced diagram does not have the expect
 std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
                   const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
   const MeshView mesh = solid.surface().mesh;
-  const TracedResult traced = traced_structure(sites, effort, context);
+  const TracedResult traced = traced_structure(sites, effort, usual_work(sites), context);
   timer.lap("traces");
   if (!traced.structure) {
     const Vec3d place = traced.place + sites.origin();

@@ -16,6 +16,8 @@ constexpr std::uint32_t none = TracedStructure::none;
 /// Traces that are computed at once. Their number must not depend on the number of threads. In a larger group, more
 /// seams are traced from both ends.
 constexpr std::size_t group_size = 64;
+/// One trace may take this part of the work: traces of a group do not know of each other.
+constexpr std::uint64_t share_of_trace = 8;
 
 /// Returns the middle of the longest piece of a curve. Traces have many points near their ends, so it is far from both.
 std::pair<Vec3d, Vec3d> middle_of(const std::vector<Vec3d>& points) {
@@ -38,8 +40,8 @@ const Vec3d& point_next_to(const TracedStructure::Curve& curve, std::uint32_t en
   return at(k);
 }
 
-SeamGraph::SeamGraph(const TracedSites& sites, const Context& context)
-    : sites_(sites), context_(context), tracer_(sites) {
+SeamGraph::SeamGraph(const TracedSites& sites, std::uint64_t most_work, const Context& context)
+    : sites_(sites), context_(context), work_{0, most_work}, tracer_(sites, work_) {
   add_vertices();
   add_edges();
 }
@@ -111,24 +113,41 @@ std::optional<SeamGraph::Walk> SeamGraph::across(const Side& side) const {
 }
 
 void SeamGraph::walk(std::span<const Walk> walks) {
-  std::vector<Trace> traces(walks.size());
-  parallel_for(context_, walks.size(), 4, "walls", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) traces[k] = trace_walk(walks[k]);
-  });
-  for (const Trace& trace : traces) {
+  std::vector<Traced> traces(walks.size());
+  for (std::size_t first = 0; first < walks.size(); first += group_size) {
+    const std::size_t size = std::min(group_size, walks.size() - first);
+    parallel_for(context_, size, 4, "walls", [&](const WorkRange& range) {
+      for (std::size_t k = first + range.begin; k < first + range.end; ++k) traces[k] = trace_walk(walks[k]);
+    });
+    for (std::size_t k = first; k < first + size; ++k) count(traces[k]);
+  }
+  for (const auto& [trace, seams, work] : traces) {
     if (trace.end == TraceEnd::failed) throw TraceProblem{"a walk along a wall failed", trace.points.back()};
     if (trace.end == TraceEnd::event) reach(trace.points.back(), trace.sites);
   }
   finish_rays();
 }
 
-Trace SeamGraph::trace_walk(const Walk& walk) const {
+TraceWork SeamGraph::work_of_trace() const {
+  return {0, std::min(work_.left(), work_.most / share_of_trace)};
+}
+
+void SeamGraph::count(const Traced& traced) {
+  work_.done += traced.work;
+  const bool is_long = traced.work > work_.most / share_of_trace;
+  if (is_long || work_.is_exhausted()) throw TraceProblem{"tracing is too much work", traced.trace.points.back()};
+}
+
+SeamGraph::Traced SeamGraph::trace_walk(const Walk& walk) const {
   const auto& [a, b] = walk.sites;
   // Edges from one vertex have two planes between them; the footprints ahead select one.
   const Vec3d ahead = walk.start + walk.towards * (1e-3 * sites_.distance(a, walk.start));
   const TracedCurve curve{{tracer_.between(a, b, ahead), TracedSurface::plane(walk.normal, walk.start)},
                           {std::min(a, b), std::max(a, b)}};
-  return tracer_.trace(curve, walk.start, walk.towards, {});
+  TraceWork work = work_of_trace();
+  Traced out{SeamTracer(sites_, work).trace(curve, walk.start, walk.towards, {}), {}, 0};
+  out.work = work.done;
+  return out;
 }
 
 /// Follows what is not yet known at the end of a walk: a junction, or a seam.
@@ -170,6 +189,7 @@ void SeamGraph::follow(const Vec3d& at, const std::vector<LeavingSeam>& seams) {
   std::array<Trace, 2> both;
   for (const std::size_t k : {0U, 1U}) {
     Traced found = trace_seam(at, seams[k], seams[k].ray.sites);
+    count(found);
     both[k] = std::move(found.trace);
     if (both[k].end == TraceEnd::event) {
       // The junction's own rays contain this seam.
@@ -249,6 +269,7 @@ void SeamGraph::finish_rays() {
         traced[k] = trace_seam(from.at, rays_[group[k].first][group[k].second].seam, from.sites);
       }
     });
+    for (const Traced& each : traced) count(each);
     for (std::size_t k = 0; k < group.size(); ++k) {
       // Another trace of the group may have arrived from the other end.
       if (rays_[group[k].first][group[k].second].curve == none) add_traced(group[k], std::move(traced[k]));
@@ -258,11 +279,14 @@ void SeamGraph::finish_rays() {
 
 SeamGraph::Traced SeamGraph::trace_seam(const Vec3d& at, const LeavingSeam& seam,
                                         const std::vector<Index>& left) const {
-  Traced out{tracer_.trace(seam.curve, seam.start, seam.ray.direction, left), {}};
+  TraceWork work = work_of_trace();
+  const SeamTracer tracer(sites_, work);
+  Traced out{tracer.trace(seam.curve, seam.start, seam.ray.direction, left), {}, 0};
   if (seam.start != at) out.trace.points.insert(out.trace.points.begin(), at);
   if (out.trace.end == TraceEnd::event && find_junction(out.trace.points.back(), out.trace.sites) == none) {
-    out.seams = leaving_seams(sites_, tracer_, out.trace.points.back(), out.trace.sites);
+    out.seams = leaving_seams(sites_, tracer, out.trace.points.back(), out.trace.sites);
   }
+  out.work = work.done;
   return out;
 }
 

@@ -27,7 +27,8 @@ namespace blum::voronoi {
 /// Seams and walks are traced in parallel, in groups that do not depend on the number of threads.
 class SeamGraph {
  public:
-  SeamGraph(const TracedSites& sites, const Context& context);
+  /// @param most_work  limit on the work, > 0.
+  SeamGraph(const TracedSites& sites, std::uint64_t most_work, const Context& context);
 
   /// Walks from the middle of each edge of the polyhedron along the walls that end there, and follows what it finds.
   /// @throws TraceProblem, Cancelled.
@@ -42,6 +43,7 @@ class SeamGraph {
   void cross(std::span<const Side> sides);
 
   [[nodiscard]] const TracedStructure& structure() const { return out_; }
+  [[nodiscard]] std::uint64_t work() const { return work_.done; }
   [[nodiscard]] TracedStructure take() { return std::move(out_); }
 
  private:
@@ -65,14 +67,19 @@ class SeamGraph {
   struct Traced {
     Trace trace;
     std::vector<LeavingSeam> seams;  ///< at the end, if it is an event
+    std::uint64_t work = 0;
   };
 
   void add_vertices();
   void add_edges();
   void walk(std::span<const Walk> walks);
   [[nodiscard]] std::optional<Walk> across(const Side& side) const;
-  [[nodiscard]] Trace trace_walk(const Walk& walk) const;
+  [[nodiscard]] Traced trace_walk(const Walk& walk) const;
   [[nodiscard]] Traced trace_seam(const Vec3d& at, const LeavingSeam& seam, const std::vector<Index>& left) const;
+  /// Returns the counter of one trace.
+  [[nodiscard]] TraceWork work_of_trace() const;
+  /// Adds the work of a trace. @throws TraceProblem if there is too much.
+  void count(const Traced& traced);
   void reach(const Vec3d& at, const std::vector<Index>& found);
   void follow(const Vec3d& at, const std::vector<LeavingSeam>& seams);
   void add_closed(const Vec3d& at, const LeavingSeam& seam, const Trace& trace);
@@ -88,6 +95,7 @@ class SeamGraph {
 
   const TracedSites& sites_;
   const Context& context_;
+  TraceWork work_;
   const SeamTracer tracer_;
   TracedStructure out_;
   std::multimap<double, std::uint32_t> junctions_by_x_;                ///< those inside the solid

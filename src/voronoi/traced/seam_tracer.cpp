@@ -72,6 +72,8 @@ Vec3d SeamTracer::tangent(const TracedCurve& curve, const Vec3d& x) const {
 }
 
 std::optional<Vec3d> SeamTracer::solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const {
+  ++work_.done;
+  if (work_.is_exhausted()) return std::nullopt;
   const Vec3d start = x;
   double last = std::numeric_limits<double>::infinity();
   constexpr int most_iterations = 30;
@@ -185,6 +187,12 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
   return out;
 }
 
+TracedSites::Closest SeamTracer::closest(const Vec3d& x, double tolerance) const {
+  TracedSites::Closest out = sites_.closest(x, tolerance);
+  work_.done += out.examined;
+  return out;
+}
+
 std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                 double radius, double most) const {
   std::vector<Room> out;
@@ -201,6 +209,7 @@ std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const 
   };
   const double own_rate = dot(sites_.gradient(curve.sites[0], x), along);
   sites_.for_each_within(x, reach, [&](Index i) {
+    ++work_.done;
     if (contains(curve.sites, i)) return;
     const TracedSite& site = sites_[i];
     const double beyond = sites_.outside(i, x);
@@ -235,9 +244,9 @@ std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site
     if (!found) return;
     const double way = dot(*found - x, along);
     if (way <= 0 || way >= std::min(least, most) || way < 0.5 * length(*found - x)) return;
-    const TracedSites::Closest closest = sites_.closest(*found, sites_.tolerance());
-    if (!contains(closest.sites, site)) return;
-    if (!std::includes(closest.sites.begin(), closest.sites.end(), curve.sites.begin(), curve.sites.end())) return;
+    const TracedSites::Closest there = closest(*found, sites_.tolerance());
+    if (!contains(there.sites, site)) return;
+    if (!std::includes(there.sites.begin(), there.sites.end(), curve.sites.begin(), curve.sites.end())) return;
     least = way;
     best = found;
   };
@@ -294,7 +303,7 @@ bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec
     const double share = k < parts ? static_cast<double>(k) / parts : 0.999;
     const auto at = point_in_plane(curve, from + way * share, way / size);
     if (!at || length(*at - from) > 1.5 * size) return false;
-    if (sites_.closest(*at, sites_.tolerance()).sites != curve.sites) return false;
+    if (closest(*at, sites_.tolerance()).sites != curve.sites) return false;
   }
   return true;
 }
@@ -343,7 +352,7 @@ std::optional<Vec3d> SeamTracer::touching_point(const TracedCurve& curve, Index 
 std::optional<Vec3d> SeamTracer::meeting_point(const Vec3d& x, double radius) const {
   constexpr double loose = 64;
   const double reach = loose * sites_.tolerance();
-  const TracedSites::Closest near = sites_.closest(x, reach);
+  const TracedSites::Closest near = closest(x, reach);
   if (near.sites.size() < 2) return std::nullopt;
   std::vector<TracedSurface> surfaces;
   for (std::size_t k = 0; k < near.sites.size(); ++k) {
@@ -374,7 +383,7 @@ std::optional<Vec3d> SeamTracer::meeting_point(const Vec3d& x, double radius) co
     if (length(step) < 1e-15 * sites_.extent()) break;
   }
   if (!(length(best - x) <= std::max(reach, sites_.blur(radius)))) return std::nullopt;
-  const TracedSites::Closest found = sites_.closest(best, sites_.tolerance());
+  const TracedSites::Closest found = closest(best, sites_.tolerance());
   return found.sites == near.sites ? std::optional(best) : std::nullopt;
 }
 
@@ -456,7 +465,7 @@ struct SeamTracer::Run {
     const auto met = tracer.meeting_point(touched ? *touched : at, radius);
     for (const std::optional<Vec3d>& place : {met, touched}) {
       if (!place) continue;
-      std::vector<Index> there = tracer.sites_.closest(*place, tolerance()).sites;
+      std::vector<Index> there = tracer.closest(*place, tolerance()).sites;
       if (!std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end())) continue;
       out.points.back() = *place;
       return there;
@@ -474,7 +483,7 @@ struct SeamTracer::Run {
       if (!found || length(*found - start) <= tracer.sites_.precision().apart) continue;
       const double size = length(*found - x);
       if (size > 2 * most) continue;
-      const TracedSites::Closest there = tracer.sites_.closest(*found, tolerance());
+      const TracedSites::Closest there = tracer.closest(*found, tolerance());
       if (there.sites == left && length(*found - start) <= tracer.sites_.blur(there.radius)) continue;
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
@@ -496,7 +505,7 @@ struct SeamTracer::Run {
         x = *touched;
         out.points.back() = x;
       }
-      const TracedSites::Closest there = tracer.sites_.closest(x, 4 * tolerance());
+      const TracedSites::Closest there = tracer.closest(x, 4 * tolerance());
       if (there.sites != left || length(x - start) > tracer.sites_.blur(radius)) {
         end_at(there.sites, there.radius);
         return std::nullopt;
@@ -526,7 +535,7 @@ struct SeamTracer::Run {
     if (!(step < 0.5 * leap && way > 64 * tolerance())) return false;
     const auto next = tracer.point_in_plane(curve, x + along * leap, along);
     if (!next || length(*next - x) >= 1.5 * leap || !tracer.is_clear(curve, x, *next)) return false;
-    return tracer.sites_.closest(*next, tolerance()).sites == curve.sites && go_to(next, leap);
+    return tracer.closest(*next, tolerance()).sites == curve.sites && go_to(next, leap);
   }
 
   /// Takes a step, or a shorter one if the curve bends.
@@ -555,7 +564,7 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
   run.out.points.push_back(start);
   if (dot(run.along, towards) < 0) run.along = -run.along;
   if (length(run.along) == 0) return std::move(run.out);
-  for (int k = 0; k < most_steps; ++k) {
+  for (int k = 0; k < most_steps && !work_.is_exhausted(); ++k) {
     run.radius = sites_.distance(curve.sites[0], run.x);
     run.most = longest_step * std::max(run.radius, 64 * sites_.tolerance());
     const std::vector<Room> near = rooms(curve, run.x, run.along, run.radius, 2 * run.most);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "blum/core/vec3.hpp"
+#include "voronoi/traced/trace_work.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 
 namespace blum::voronoi {
@@ -53,7 +54,8 @@ struct Trace {
 /// distance changes faster than the way.
 class SeamTracer {
  public:
-  explicit SeamTracer(const TracedSites& sites) : sites_(sites) {}
+  /// @param work  counts the work. If it is exhausted, traces fail, and nothing is found.
+  SeamTracer(const TracedSites& sites, TraceWork& work) : sites_(sites), work_(work) {}
 
   /// @param start   a point of the curve.
   /// @param towards direction at the start; need not be a tangent.
@@ -76,6 +78,9 @@ class SeamTracer {
   /// @param reach  largest distance of the points.
   [[nodiscard]] std::vector<Vec3d> seam_points(const std::vector<TracedSites::Index>& near, const Vec3d& at,
                                                const Vec3d& normal, double reach) const;
+
+  /// Returns the closest sites of a point.
+  [[nodiscard]] TracedSites::Closest closest(const Vec3d& x, double tolerance) const;
 
   /// Returns the points equally far from two sites, near one of them. For edges from one vertex, and for parallel
   /// edges, this is a plane.
@@ -105,6 +110,7 @@ class SeamTracer {
   [[nodiscard]] Vec3d slope(const TracedSurface& surface, const Vec3d& x) const;
 
   const TracedSites& sites_;
+  TraceWork& work_;
 };
 
 }  // namespace blum::voronoi

@@ -30,7 +30,7 @@ struct GermEnd {
 class Linker {
  public:
   Linker(const TracedSites& sites, const TracedStructure& structure)
-      : sites_(sites), structure_(structure), tracer_(sites), ends_(structure.junctions.size()) {
+      : sites_(sites), structure_(structure), tracer_(sites, work_), ends_(structure.junctions.size()) {
     for (std::uint32_t c = 0; c < structure.curves.size(); ++c) {
       for (std::uint32_t g = 0; g < structure.curves[c].ring.germs.size(); ++g) owners_.push_back({c, g});
     }
@@ -134,6 +134,7 @@ class Linker {
 
   const TracedSites& sites_;
   const TracedStructure& structure_;
+  TraceWork work_;
   const SeamTracer tracer_;
   std::vector<std::vector<GermEnd>> ends_;  ///< at each junction
   std::vector<SeamGraph::Side> owners_;     ///< all walls beside curves

@@ -46,7 +46,7 @@ class Assembly {
         chord_(chord),
         longest_(longest),
         context_(context),
-        tracer_(sites) {}
+        tracer_(sites, work_) {}
 
   std::optional<Complex> build() {
     list_triangles();
@@ -575,6 +575,7 @@ class Assembly {
   const double chord_;
   const double longest_;
   const Context& context_;
+  TraceWork work_;
   const SeamTracer tracer_;
   std::vector<std::vector<std::uint32_t>> triangles_of_;     ///< of each face
   std::vector<std::vector<std::uint32_t>> points_of_curve_;  ///< vertices, both ends included

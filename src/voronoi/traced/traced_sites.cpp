@@ -423,6 +423,7 @@ TracedSites::Closest TracedSites::closest(const Vec3d& x, double tolerance) cons
   Closest out;
   std::vector<std::pair<double, Index>> found;
   boxes_->for_each_near(x, out.radius, [&](Index i) {
+    ++out.examined;
     const double d = distance(i, x);
     if (d >= -tolerance && d <= out.radius + tolerance && outside(i, x) <= tolerance) {
       found.emplace_back(d, i);

@@ -132,6 +132,7 @@ class TracedSites {
   struct Closest {
     double radius = std::numeric_limits<double>::infinity();
     std::vector<Index> sites;  ///< ascending: all within the tolerance of the radius
+    std::size_t examined = 0;  ///< sites whose distance was computed
   };
   [[nodiscard]] Closest closest(const Vec3d& x, double tolerance) const;
   /// Calls visit(site) for each site whose box is within a distance of x.

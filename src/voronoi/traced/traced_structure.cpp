@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -29,8 +30,7 @@ std::vector<SeamGraph::Side> sides_to_cross(const TracedStructure& structure, co
   return out;
 }
 
-TracedStructure traced(const TracedSites& sites, std::size_t per_loop, const Context& context) {
-  SeamGraph graph(sites, context);
+TracedStructure traced(const TracedSites& sites, std::size_t per_loop, SeamGraph& graph) {
   graph.start_at_edges();
   std::set<std::pair<std::uint32_t, std::uint32_t>> crossed;
   for (;;) {
@@ -48,16 +48,24 @@ TracedStructure traced(const TracedSites& sites, std::size_t per_loop, const Con
 
 }  // namespace
 
-TracedResult traced_structure(const TracedSites& sites, TraceEffort effort, const Context& context) {
+std::uint64_t usual_work(const TracedSites& sites) {
+  constexpr std::uint64_t per_site = 2'500'000;
+  return per_site * sites.size();
+}
+
+TracedResult traced_structure(const TracedSites& sites, TraceEffort effort, std::uint64_t most_work,
+                              const Context& context) {
   TracedResult out;
+  SeamGraph graph(sites, most_work, context);
   try {
     constexpr std::size_t few = 2;
     const std::size_t per_loop = effort == TraceEffort::usual ? few : static_cast<std::size_t>(-1);
-    out.structure = traced(sites, per_loop, context);
+    out.structure = traced(sites, per_loop, graph);
   } catch (const TraceProblem& problem) {
     out.problem = problem.text;
     out.place = problem.place;
   }
+  out.work = graph.work();
   return out;
 }
 

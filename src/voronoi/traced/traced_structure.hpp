@@ -53,8 +53,9 @@ struct TracedStructure {
 /// A structure, or the reason why there is none.
 struct TracedResult {
   std::optional<TracedStructure> structure;
-  std::string problem;  ///< for a report; empty if `structure` exists
-  Vec3d place;          ///< of the problem
+  std::string problem;     ///< for a report; empty if `structure` exists
+  Vec3d place;             ///< of the problem
+  std::uint64_t work = 0;  ///< as counted by TraceWork
 };
 
 /// How thoroughly sheets are searched for further boundaries.
@@ -64,7 +65,12 @@ enum class TraceEffort : std::uint8_t {
 };
 
 /// Traces the diagram of sites. Traces start from edges of the polyhedron, and from sheets that were found.
+/// @param most_work  limit on the work, > 0. One trace may take an eighth of it.
 /// @throws Cancelled.
-[[nodiscard]] TracedResult traced_structure(const TracedSites& sites, TraceEffort effort, const Context& context);
+[[nodiscard]] TracedResult traced_structure(const TracedSites& sites, TraceEffort effort, std::uint64_t most_work,
+                                            const Context& context);
+
+/// Returns a limit on the work of a diagram: about ten times the largest work per site that diagrams need.
+[[nodiscard]] std::uint64_t usual_work(const TracedSites& sites);
 
 }  // namespace blum::voronoi

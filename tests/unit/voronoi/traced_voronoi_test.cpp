@@ -114,6 +114,29 @@ TEST(TracedDiagram, FallsBackToCubesWithAReason) {
   EXPECT_TRUE(all.report.certified);
 }
 
+/// The limit on the work stops all runs at the same place, and does not change a diagram that needs less.
+TEST(TracedDiagram, StopsAtALimitOfItsWork) {
+  const TracedSites sites = sites_of(make_bracket());
+  std::vector<TracedResult> whole, stopped;
+  for (const int threads : {1, 4}) {
+    Context context;
+    context.threads = threads;
+    whole.push_back(traced_structure(sites, TraceEffort::usual, usual_work(sites), context));
+    stopped.push_back(traced_structure(sites, TraceEffort::usual, whole.back().work / 2, context));
+  }
+  ASSERT_TRUE(whole[0].structure) << whole[0].problem;
+  EXPECT_LT(10 * whole[0].work, usual_work(sites));
+  EXPECT_EQ(whole[0].work, whole[1].work);
+  EXPECT_FALSE(stopped[0].structure);
+  EXPECT_EQ(stopped[0].problem, "tracing is too much work");
+  EXPECT_EQ(stopped[0].place, stopped[1].place);
+  EXPECT_EQ(stopped[0].work, stopped[1].work);
+
+  const TracedResult enough = traced_structure(sites, TraceEffort::usual, 8 * whole[0].work, {});
+  ASSERT_TRUE(enough.structure);
+  EXPECT_EQ(enough.structure->curves.size(), whole[0].structure->curves.size());
+}
+
 /// Around the middle line of a square bar, four regions meet along one seam.
 TEST(LocalStar, FindsASeamOfFourRegions) {
   const TracedSites sites = sites_of(prism({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, 10));
@@ -131,7 +154,6 @@ TEST(LocalStar, FindsASeamOfFourRegions) {
 TEST(WallMap, ReturnsThePointsOfCurvedWalls) {
   const TriangleMesh mesh = prism(ell, 20);
   const TracedSites sites = sites_of(mesh);
-  const SeamTracer tracer(sites);
   TracedSites::Index edge = 0;
   while (sites[edge].kind != SiteKind::edge) ++edge;
   std::size_t count = 0;
