@@ -353,7 +353,7 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
       return out;
     }
   }
-  if (options.method == VoronoiMethod::traced) {
+  if (options.method != VoronoiMethod::cubes) {
     trace(solid, table, sites, options, timer, out, context);
     if (report.traced) return out;
   }
