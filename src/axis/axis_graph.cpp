@@ -10,10 +10,11 @@
 #include <utility>
 
 #include "axis/axis_parts.hpp"
-#include "axis/surface_patches.hpp"
-#include "blum/axis/check_angle.hpp"
 #include "blum/complex/medial_columns.hpp"
+#include "blum/core/check_angle.hpp"
 #include "blum/core/sort_unique.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/surface_patches.hpp"
 
 namespace blum {
 namespace {
@@ -162,6 +163,23 @@ void check_needed(const Complex& axis) {
   }
 }
 
+/// @throws InvalidOption for a site that the mesh does not have.
+std::vector<std::uint32_t> patches_at(const SurfacePatches& patches, SiteId site) {
+  if (site.value < patches.site_count()) return patches.at(site);
+  throw InvalidOption("the axis uses site " + std::to_string(site.value) +
+                      " (counted from 0), but the number of sites of the mesh is " +
+                      std::to_string(patches.site_count()) +
+                      ": the axis belongs to another mesh, or to the same mesh welded differently");
+}
+
+std::vector<AxisPatch> listed(const SurfacePatches& patches) {
+  std::vector<AxisPatch> out;
+  for (const detail::SurfacePatch& one : patches.patches()) {
+    out.push_back({one.faces, one.area, one.centroid, one.normal});
+  }
+  return out;
+}
+
 /// Adds to each sheet the pairs of patches that contain the two footprints of its vertices. Each corner of a triangle
 /// contributes a third of the triangle's area to its pair.
 class PatchPairs {
@@ -201,8 +219,8 @@ class PatchPairs {
       sides_.emplace_back(none, none);
       if (axis.footprint(v, 0) == axis.footprint(v, 1)) continue;
       if (!axis.site(v, 0).has_value() || !axis.site(v, 1).has_value()) continue;
-      std::vector<std::uint32_t> first = patches_.at(axis.site(v, 0));
-      std::vector<std::uint32_t> second = patches_.at(axis.site(v, 1));
+      std::vector<std::uint32_t> first = patches_at(patches_, axis.site(v, 0));
+      std::vector<std::uint32_t> second = patches_at(patches_, axis.site(v, 1));
       if (second < first) std::swap(first, second);
       sides_.back() = {number_of(std::move(first)), number_of(std::move(second))};
     }
@@ -236,7 +254,7 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Axi
   walker.walk(context);
   add_sheets(parts, walker.line_of_edge(), options.homotopy_angle, graph);
   if (patches == nullptr) return graph;
-  graph.patches = patches->patches();
+  graph.patches = listed(*patches);
   PatchPairs(parts, *patches, graph).add();
   return graph;
 }

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "blum/axis/check_angle.hpp"
 #include "blum/axis/label_sheets.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
+#include "blum/core/check_angle.hpp"
 
 namespace blum {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "axis/surface_patches.hpp"
+#include "blum/geometry/surface_patches.hpp"
 
 namespace blum::detail {
 namespace {
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> numbers_of_faces(const PatchedMesh& part, const SiteT
   const std::vector<std::uint32_t> first_of_flat = first_faces(flats, part);
   const std::vector<std::uint32_t> first_of_rest = first_faces(rest, part);
   double area = 0;
-  for (const AxisPatch& patch : rest.patches()) area += patch.area;
+  for (const SurfacePatch& patch : rest.patches()) area += patch.area;
   std::vector<std::uint32_t> numbers(part.mesh.triangles.size(), PatchNumbers::none);
   for (std::uint32_t t = 0; t < numbers.size(); ++t) {
     const std::uint32_t patch = flats.of_face(t);

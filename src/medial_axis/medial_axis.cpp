@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "blum/axis/check_angle.hpp"
 #include "blum/axis/label_sheets.hpp"
 #include "blum/axis/order_sheets.hpp"
 #include "blum/axis/patch_numbers.hpp"
 #include "blum/complex/complex.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
+#include "blum/core/check_angle.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parts.hpp"

@@ -1,14 +1,12 @@
-#include "axis/surface_patches.hpp"
+#include "blum/geometry/surface_patches.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <string>
 #include <utility>
 
-#include "blum/core/error.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 
@@ -27,24 +25,30 @@ bool runs_along(const Triangle& triangle, const Segment& edge) {
   return false;
 }
 
+/// Returns the normals of all triangles. Their lengths are twice the areas.
+std::vector<Vec3d> normals_of(const MeshView& mesh) {
+  std::vector<Vec3d> out;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3d& at = mesh.vertices[a];
+    out.push_back(cross(mesh.vertices[b] - at, mesh.vertices[c] - at));
+  }
+  return out;
+}
+
 }  // namespace
 
 SurfacePatches::SurfacePatches(const MeshView& mesh, double angle, const Context& context)
     : SurfacePatches((validate(mesh), mesh), SiteTable(mesh, context), angle, context) {}
 
 SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context)
-    : mesh_(mesh), sites_(std::move(sites)) {
-  find_normals();
+    : SurfacePatches(mesh, std::move(sites), normals_of(mesh), angle, context) {}
+
+SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals, double angle,
+                               const Context& context)
+    : mesh_(mesh), sites_(std::move(sites)), normals_(std::move(normals)) {
   find_rows();
   join_faces(angle, context);
   add_up();
-}
-
-void SurfacePatches::find_normals() {
-  for (const auto& [a, b, c] : mesh_.triangles) {
-    const Vec3d& at = mesh_.vertices[a];
-    normals_.push_back(cross(mesh_.vertices[b] - at, mesh_.vertices[c] - at));
-  }
 }
 
 void SurfacePatches::find_rows() {
@@ -105,7 +109,7 @@ void SurfacePatches::join_faces(double angle, const Context& context) {
 void SurfacePatches::add_up() {
   for (std::size_t t = 0; t < patch_of_.size(); ++t) {
     if (patch_of_[t] == none) continue;
-    AxisPatch& patch = patches_[patch_of_[t]];
+    SurfacePatch& patch = patches_[patch_of_[t]];
     const auto& [a, b, c] = mesh_.triangles[t];
     const double area = 0.5 * length(normals_[t]);
     ++patch.faces;
@@ -113,7 +117,7 @@ void SurfacePatches::add_up() {
     patch.centroid += area / 3 * (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]);
     patch.normal += 0.5 * normals_[t];
   }
-  for (AxisPatch& patch : patches_) {
+  for (SurfacePatch& patch : patches_) {
     patch.centroid = patch.centroid / patch.area;
     const double size = length(patch.normal);
     // For a closed surface the sum is 0 up to rounding.
@@ -122,11 +126,6 @@ void SurfacePatches::add_up() {
 }
 
 std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
-  if (site.value >= sites_.size()) {
-    throw InvalidOption("the axis uses site " + std::to_string(site.value) +
-                        " (counted from 0), but the number of sites of the mesh is " + std::to_string(sites_.size()) +
-                        ": the axis belongs to another mesh, or to the same mesh welded differently");
-  }
   const Site on = sites_.site(site);
   std::vector<std::uint32_t> out;
   if (on.kind == SiteKind::face) {

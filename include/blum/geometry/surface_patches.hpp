@@ -1,18 +1,28 @@
 // Blum: smooth parts of a mesh, and the parts that a site lies on. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "blum/axis/axis_graph.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum::detail {
 
-/// Patches of a mesh (see AxisPatch), numbered in the order of their first faces.
+/// Smooth part of a mesh. Its faces are connected through edges that have exactly two faces and bend little. Faces
+/// without area belong to no patch.
+struct SurfacePatch {
+  std::size_t faces = 0;
+  double area = 0;  ///< Square mesh units.
+  Vec3d centroid;   ///< Centroid of the area.
+  Vec3d normal;     ///< Mean normal over the area, scaled to unit length; 0 if undefined, as for a closed surface.
+};
+
+/// Patches of a mesh, numbered in the order of their first faces.
 class SurfacePatches {
  public:
   /// The mesh must outlive this object.
@@ -21,14 +31,20 @@ class SurfacePatches {
   SurfacePatches(const MeshView& mesh, double angle, const Context& context);
   /// Does the same with the given sites of the mesh. The mesh must pass validate().
   SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context);
+  /// Does the same with given normals, for example with those of planes that several triangles have in common.
+  /// @param normals  for each triangle, a vector in the direction of its normal. Its length is twice the area.
+  SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals, double angle,
+                 const Context& context);
 
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  [[nodiscard]] const std::vector<AxisPatch>& patches() const { return patches_; }
+  [[nodiscard]] const std::vector<SurfacePatch>& patches() const { return patches_; }
+  /// Returns the number of sites of the mesh.
+  [[nodiscard]] std::size_t site_count() const { return sites_.size(); }
   /// Returns the patch number of a face; none for a face without area.
   [[nodiscard]] std::uint32_t of_face(std::uint32_t face) const { return patch_of_[face]; }
   /// Returns the indices of the patches to which a site belongs, in ascending order.
-  /// @throws InvalidOption for a site that the mesh does not have.
+  /// @param site  below site_count().
   [[nodiscard]] std::vector<std::uint32_t> at(SiteId site) const;
 
  private:
@@ -37,7 +53,6 @@ class SurfacePatches {
     std::vector<std::size_t> first;
     std::vector<std::uint32_t> triangles;
   };
-  void find_normals();
   void find_rows();
   void join_faces(double angle, const Context& context);
   [[nodiscard]] bool is_smooth(std::uint32_t edge, double least_cosine) const;
@@ -48,7 +63,7 @@ class SurfacePatches {
   std::vector<Vec3d> normals_;  ///< normals of the triangles; their length is twice the area
   Rows at_edges_, at_vertices_;
   std::vector<std::uint32_t> patch_of_;  ///< for each face
-  std::vector<AxisPatch> patches_;
+  std::vector<SurfacePatch> patches_;
 };
 
 }  // namespace blum::detail
