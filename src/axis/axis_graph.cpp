@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "axis/axis_parts.hpp"
+#include "axis/patch_axis.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/check_angle.hpp"
 #include "blum/core/sort_unique.hpp"
@@ -248,14 +249,18 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Axi
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
     throw InvalidOption("this is not a medial axis, so it has no graph: " + problem);
   }
+  std::optional<detail::PatchAxis> between_patches;
+  if (options.of_patches) between_patches.emplace(all.get(), context);
   AxisGraph graph;
-  const AxisParts parts(all.get(), context);
+  const AxisParts parts(between_patches ? between_patches->get() : all.get(), context);
   LineWalker walker(parts, options.homotopy_angle, graph);
   walker.walk(context);
   add_sheets(parts, walker.line_of_edge(), options.homotopy_angle, graph);
-  if (patches == nullptr) return graph;
-  graph.patches = listed(*patches);
-  PatchPairs(parts, *patches, graph).add();
+  if (patches != nullptr) {
+    graph.patches = listed(*patches);
+    PatchPairs(parts, *patches, graph).add();
+  }
+  if (between_patches) between_patches->complete(graph);
   return graph;
 }
 

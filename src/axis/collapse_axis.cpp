@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "blum/axis/label_patch_sheets.hpp"
 #include "blum/axis/label_sheets.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
@@ -37,7 +38,9 @@ class AxisCollapser {
   Complex run() {
     collapse_triangles();
     collapse_edges();
-    return result();
+    Complex out = result();
+    if (out.triangle_columns.find(medial_columns::patches[0]) != nullptr) label_patch_sheets(out, context_);
+    return out;
   }
 
  private:

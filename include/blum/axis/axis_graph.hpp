@@ -26,6 +26,9 @@ struct AxisGraphOptions {
   /// this separation angle count as existing for homotopy alone. Leave it unset if angles are unknown; then no triangle
   /// or edge counts as existing for homotopy alone.
   std::optional<double> homotopy_angle = {};
+  /// If true, sheets are those of pairs of patches. They are numbered as in the column `patch_sheet` of
+  /// label_patch_sheets(). Triangles inside a patch are left out.
+  bool of_patches = false;
 };
 
 template <>
@@ -39,6 +42,8 @@ struct Description<AxisGraphOptions> {
              "threshold theta of the axis: triangles and edges with at most this angle exist for homotopy alone; if "
              "unset, none do",
              Range::between(0, 180)},
+      Member{"of_patches", &AxisGraphOptions::of_patches, "",
+             "true for sheets of pairs of patches, numbered as in the column patch_sheet of an axis with patches"},
   };
 };
 
@@ -210,6 +215,8 @@ struct AxisSheet {
   std::int64_t euler_characteristic = 0;   ///< After cutting along seams: 1 for a disc, 0 for a ring, 2 for a sphere.
   std::vector<std::uint32_t> seams;        ///< Seams along which it meets other sheets or itself, ascending.
   std::vector<AxisPatchPair> patch_pairs;  ///< Patches on its two sides, by descending share; empty without a mesh.
+  /// In a graph of patches (AxisGraphOptions::of_patches): its `patch_a` and `patch_b`. Otherwise unset.
+  std::optional<std::array<std::uint32_t, 2>> sides;
 };
 
 template <>
@@ -242,6 +249,8 @@ struct Description<AxisSheet> {
       Member{"seams", &AxisSheet::seams, "", "seams along which the sheet meets other sheets or itself"},
       Member{"patch_pairs", &AxisSheet::patch_pairs, "",
              "patches on both sides of the sheet, by descending share; none without the mesh"},
+      Member{"sides", &AxisSheet::sides, "",
+             "in a graph of patches: the columns patch_a and patch_b of its triangles; otherwise none"},
   };
 };
 
@@ -293,6 +302,9 @@ struct Description<AxisGraph> {
 /// to preserve the homotopy type. Triangles and edges with an angle of at most theta (AxisGraphOptions::homotopy_angle)
 /// count as existing for homotopy alone. MedialCheck::homotopy_share counts triangles in the same way. Some of these
 /// triangles and edges were kept only because another triangle or edge prevented their removal.
+///
+/// In a graph of patches (AxisGraphOptions::of_patches), the column `patch_sheet` decides which triangles form a sheet.
+/// Triangles without such a sheet are left out, so fewer triangles may meet at an edge.
 ///
 /// @param axis  axis with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
 /// angles count as 0.

@@ -23,7 +23,8 @@ namespace blum {
 ///               `radius`, footprints, sites and `separation_angle`; triangles need `separation_angle`. Other columns
 ///               of vertices and triangles are kept. Listed edges are ignored.
 /// @param theta  degrees, 0 to 180. At 0, only triangles and edges with an angle of 0 are removed.
-/// @return       complex with the columns of MedialView. Sheets are numbered in the order of their first triangles.
+/// @return       complex with the columns of MedialView. Sheets are numbered in the order of their first triangles. If
+///               the walls have the columns of add_patch_columns(), label_patch_sheets() adds sheets of patches.
 /// @throws InvalidOption if theta is out of range or a column is missing; InvalidMesh with the text of
 /// problem_of(walls); Cancelled.
 /// Cost: O(n log n) for n triangles, about 1 us per triangle.

@@ -58,6 +58,11 @@ inline constexpr std::string_view role = "role";
 /// mesh, the number of a sheet depends on the faces on its two sides (see medial_axis()). In the axis of an image, they
 /// are numbered in the order of their first triangles.
 inline constexpr std::string_view sheet = "sheet";
+/// Additional columns of axes from Voronoi diagrams with patches (add_patch_columns()). Triangles, int32: the patches
+/// on the two sides, the smaller number first. Inside a patch, both are equal.
+inline constexpr std::array<std::string_view, 2> patches{"patch_a", "patch_b"};
+/// Additional column of the same axes. Triangles, int32: number of the sheet of two patches, from 0; -1 inside a patch.
+inline constexpr std::string_view patch_sheet = "patch_sheet";
 
 /// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: a
 /// vertex, edge or triangle exists if theta is less than this angle. Infinite if it exists at every theta.
