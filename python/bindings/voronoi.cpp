@@ -22,6 +22,7 @@
 #include "blum/solid/solid.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_patches.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "blum/voronoi/voronoi_sites.hpp"
 #include "call.hpp"
@@ -37,6 +38,24 @@ std::vector<VoronoiSite> sites_of(const MeshView& mesh, JoinedFaces joined, cons
   VoronoiReport report;
   report.joined_faces = std::move(joined);
   return voronoi_sites(mesh, report, context);
+}
+
+/// Sites of a complex as patches, if Python gives a patch angle.
+struct Joining {
+  const MeshView& mesh;
+  JoinedFaces joined;
+  std::optional<double> patch_angle;  ///< degrees
+};
+
+std::vector<VoronoiPatch> patches_of(const Joining& how, const Context& context) {
+  VoronoiPatchOptions options;
+  if (how.patch_angle) options.patch_angle = *how.patch_angle;
+  return voronoi_patches(how.mesh, sites_of(how.mesh, how.joined, context), options, context);
+}
+
+VoronoiGraph graph_of(const Complex& complex, const Joining& how, const Context& context) {
+  if (!how.patch_angle) return voronoi_graph(complex, context);
+  return voronoi_graph(complex, patches_of(how, context), context);
 }
 
 }  // namespace
@@ -76,23 +95,51 @@ void bind_voronoi(nb::module_& m) {
   bind_struct<VoronoiWall>(m);
   bind_struct<VoronoiSeam>(m);
   bind_struct<VoronoiJunction>(m);
+  bind_struct<VoronoiPatch>(m);
   bind_struct<VoronoiGraph>(m);
   m.def(
-      "voronoi_graph",
-      [](const Complex& complex) {
-        return result_of(run({0, nb::none()}, [&](const Context& context) { return voronoi_graph(complex, context); }));
+      "voronoi_patches",
+      [](const MeshArrays& mesh, const JoinedFaces& joined, double patch_angle) {
+        nb::list out;
+        const MeshView view = mesh.view();
+        const auto found = run(
+            {0, nb::none()}, [&](const Context& context) { return patches_of({view, joined, patch_angle}, context); });
+        for (const VoronoiPatch& patch : found) out.append(to_python(patch));
+        return out;
       },
-      nb::arg("complex"));
+      nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle"));
+  m.def(
+      "with_patches",
+      [](const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined, double patch_angle) {
+        Complex out = complex;
+        const MeshView view = mesh.view();
+        run_call({0, nb::none()}, [&](const Context& context) {
+          add_patch_columns(out, patches_of({view, joined, patch_angle}, context));
+        });
+        return out;
+      },
+      nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle"));
+  m.def(
+      "voronoi_graph",
+      [](const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined, std::optional<double> patch_angle) {
+        const MeshView view = mesh.view();
+        return result_of(run({0, nb::none()}, [&](const Context& context) {
+          return graph_of(complex, {view, joined, patch_angle}, context);
+        }));
+      },
+      nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle").none());
   m.def(
       "write_voronoi_graph",
       [](const std::filesystem::path& path, const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined,
-         const std::vector<std::pair<std::string, std::string>>& metadata) {
+         std::optional<double> patch_angle, const std::vector<std::pair<std::string, std::string>>& metadata) {
         const MeshView view = mesh.view();
         run_call({0, nb::none()}, [&](const Context& context) {
-          write_voronoi_graph(path, voronoi_graph(complex, context), sites_of(view, joined, context), metadata);
+          const VoronoiGraph graph = graph_of(complex, {view, joined, patch_angle}, context);
+          write_voronoi_graph(path, graph, sites_of(view, joined, context), metadata);
         });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("metadata"));
+      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle").none(),
+      nb::arg("metadata"));
   using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;
   m.def(
       "with_failing_cells",

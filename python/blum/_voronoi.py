@@ -21,7 +21,7 @@ from ._methods import ShortList
 from ._options import takes
 from ._progress import Progress, reporting
 from ._solid import Solid
-from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport, VoronoiSite
+from ._structs import VoronoiGraph, VoronoiOptions, VoronoiPatch, VoronoiRegion, VoronoiReport, VoronoiSite
 from ._warn import warn
 
 __all__ = ["VoronoiComplex", "voronoi_complex"]
@@ -111,10 +111,56 @@ class VoronoiComplex(Complex):
             raise InvalidOption(f'regions need walls and surface: part="all", not "{self.part}"')
         return ShortList(_core.voronoi_regions(self._core))
 
-    def graph(self) -> VoronoiGraph:
+    def patches(self, patch_angle: Real = 30.0) -> list[VoronoiPatch]:
+        """Returns the patches of the sites: each is a smooth part of the surface, whose sites may count as one.
+
+        Each has `kind` ("face", "edge" or "vertex") and `sites`. A patch of faces contains the reflex edges and
+        vertices inside it. Reflex edges between patches form patches of their own.
+
+        Parameters
+        ----------
+        patch_angle : float
+            Degrees, 0 to 180. The largest bend at an edge between two faces of one patch.
+
+        Examples
+        --------
+        >>> import blum
+        >>> found = blum.voronoi_complex(blum.generate("cylinder", sides=48))
+        >>> len(found.sites()), len(found.patches())
+        (50, 3)
+        """
+        angle = number(patch_angle, "patch_angle")
+        return ShortList(_core.voronoi_patches(self._mesh._arrays, self.report.joined_faces, angle))
+
+    def with_patches(self, patch_angle: Real = 30.0) -> VoronoiComplex:
+        """Returns this complex with the patches on both sides of each triangle, as columns `patch_a` and `patch_b`.
+
+        The numbers are those of :meth:`patches`, the smaller one first. `patch_a` is -1 on the surface. Inside a patch,
+        both are equal. The axis from :meth:`medial_axis` keeps these columns, and has sheets of patches as a column
+        `patch_sheet`. Its `graph(of_patches=True)` then has these sheets.
+
+        Examples
+        --------
+        >>> import blum
+        >>> walls = blum.voronoi_complex(blum.generate("cylinder", sides=48), part="medial")
+        >>> axis = walls.with_patches().medial_axis()
+        >>> [sheet.sides for sheet in axis.graph(of_patches=True).sheets]
+        [(0, 1), (1, 2)]
+        """
+        angle = number(patch_angle, "patch_angle")
+        core = _core.with_patches(self._core, self._mesh._arrays, self.report.joined_faces, angle)
+        return VoronoiComplex._of(core, self.report, self.part, self._mesh)
+
+    def graph(self, patch_angle: Real | None = None) -> VoronoiGraph:
         """Returns the regions (for `part="all"`), walls, seams and junctions, and their connections.
 
         `.to_networkx(sites)` converts the graph.
+
+        Parameters
+        ----------
+        patch_angle : float, optional
+            If given, the graph is that of the :meth:`patches`, listed in its `patches`. All numbers of sites in it are
+            then numbers of patches.
 
         Examples
         --------
@@ -124,7 +170,9 @@ class VoronoiComplex(Complex):
         >>> len(graph.regions), len(graph.walls), len(graph.seams), len(graph.junctions)
         (6, 13, 12, 12)
         """
-        found: VoronoiGraph = _core.voronoi_graph(self._core)
+        found: VoronoiGraph = _core.voronoi_graph(
+            self._core, self._mesh._arrays, self.report.joined_faces, _angle(patch_angle)
+        )
         return found
 
     def medial_axis(self, theta: Real = 1.0, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
@@ -201,7 +249,7 @@ class VoronoiComplex(Complex):
         core = self._core if self.report.certified else self.with_failing_cells()._core
         _core.write_complex(Path(os.fspath(path)), core, list(self._metadata().items()), [], True)
 
-    def write_graph(self, path: PathLike) -> None:
+    def write_graph(self, path: PathLike, *, patch_angle: Real | None = None) -> None:
         """Writes :meth:`graph` with the sites to .json or .graphml, and records whether the diagram is certified.
 
         .json holds everything. .graphml holds nodes and edges with numbers, for networkx, Gephi, igraph and yEd. The
@@ -220,6 +268,7 @@ class VoronoiComplex(Complex):
             self._core,
             self._mesh._arrays,
             self.report.joined_faces,
+            _angle(patch_angle),
             list(self._metadata().items()),
         )
 
@@ -239,11 +288,16 @@ def _restored(arguments: tuple[Any, ...], report: VoronoiReport, part: str, mesh
     return VoronoiComplex._of(_core.Complex(*arguments), report, part, mesh)
 
 
+def _angle(patch_angle: Real | None) -> float | None:
+    return None if patch_angle is None else number(patch_angle, "patch_angle")
+
+
 def to_networkx(graph: VoronoiGraph, sites: Sequence[VoronoiSite] = ()) -> Any:
     """Returns the graph as a networkx.MultiGraph; see VoronoiGraph.to_networkx."""
     out = multigraph("VoronoiGraph")
-    for index, site in enumerate(sites):
-        out.add_node(f"region{index}", element="region", kind=site.kind)
+    kinds = [patch.kind for patch in graph.patches] or [site.kind for site in sites]
+    for index, kind in enumerate(kinds):
+        out.add_node(f"region{index}", element="region", kind=kind)
     for region in graph.regions:
         out.add_node(f"region{region.site}", element="region", **attributes_of(region))
     for wall in graph.walls:

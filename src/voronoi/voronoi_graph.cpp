@@ -11,6 +11,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
+#include "voronoi/patch_numbers.hpp"
 
 namespace blum {
 namespace {
@@ -21,8 +22,11 @@ using detail::sort_unique;
 
 class GraphBuilder {
  public:
-  GraphBuilder(const Complex& complex, const Context& context)
+  /// @param of_patches  true if the sites of the complex are patches. Then a mark in the column `junction` may be that
+  ///                    of a point inside a patch's wall or seam.
+  GraphBuilder(const Complex& complex, bool of_patches, const Context& context)
       : complex_(complex),
+        of_patches_(of_patches),
         site_a_(complex.triangle_columns.get<std::int32_t>("site_a")),
         site_b_(complex.triangle_columns.get<std::int32_t>("site_b")),
         incidence_({complex.positions.size(), {}, complex.triangles}, context),
@@ -131,7 +135,7 @@ class GraphBuilder {
       for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
         if (is_on_seam[e] != 0) meeting.push_back(e);
       }
-      const bool is_passed = meeting.size() == 2 && !(is_exact() && is_junction_[v] != 0);
+      const bool is_passed = meeting.size() == 2 && may_pass(v, meeting);
       if (is_passed) joined.join(meeting[0], meeting[1]);
       is_end_[v] = meeting.empty() || is_passed ? 0 : 1;
     }
@@ -153,6 +157,15 @@ class GraphBuilder {
       }
     }
     return out;
+  }
+
+  /// Returns true if the two seam edges at a vertex may belong to one seam.
+  [[nodiscard]] bool may_pass(std::uint32_t v, const std::vector<std::uint32_t>& meeting) const {
+    if (!is_exact() || is_junction_[v] == 0) return true;
+    if (!of_patches_) return false;
+    const std::vector<std::int32_t> sites = sites_of(incidence_.triangles_of_vertex()[v]);
+    return std::all_of(meeting.begin(), meeting.end(),
+                       [&](std::uint32_t e) { return sites_of(incidence_.triangles_of_edge()[e]) == sites; });
   }
 
   /// Returns true if the complex marks its junctions, because it has those of the exact diagram.
@@ -224,6 +237,7 @@ class GraphBuilder {
   }
 
   const Complex& complex_;
+  const bool of_patches_;
   std::span<const std::int32_t> site_a_, site_b_;
   std::span<const std::int32_t> is_junction_;  ///< for each vertex: 1 at junctions; empty if the complex has no marks
   const Incidence incidence_;
@@ -235,11 +249,49 @@ class GraphBuilder {
   VoronoiGraph out_;
 };
 
+/// Returns the complex whose sites are the patches: only triangles on walls between different patches and on the
+/// surface. It has all vertices of the given complex.
+Complex complex_of(const Complex& complex, std::span<const VoronoiPatch> patches) {
+  const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
+  const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
+  const voronoi::PatchNumbers numbers(patches);
+  Complex out;
+  out.positions = complex.positions;
+  out.vertex_columns = Columns(out.positions.size());
+  if (const Column* junction = complex.vertex_columns.find("junction")) out.vertex_columns.add(*junction);
+  std::vector<std::int32_t> patch_a, patch_b;
+  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+    std::int32_t a = numbers.of_side(site_a[t]);
+    std::int32_t b = numbers.of_side(site_b[t]);
+    if (a == b) continue;
+    auto [p, q, r] = complex.triangles[t];
+    if (a > b) {  // corners run counterclockwise as seen from the region of patch b
+      std::swap(a, b);
+      std::swap(q, r);
+    }
+    out.triangles.push_back({p, q, r});
+    patch_a.push_back(a);
+    patch_b.push_back(b);
+  }
+  out.triangle_columns = Columns(out.triangles.size());
+  out.triangle_columns.add({"site_a", 1, std::move(patch_a)});
+  out.triangle_columns.add({"site_b", 1, std::move(patch_b)});
+  return out;
+}
+
 }  // namespace
 
 VoronoiGraph voronoi_graph(const Complex& complex, const Context& context) {
   validate(complex);
-  return GraphBuilder(complex, context).build();
+  return GraphBuilder(complex, false, context).build();
+}
+
+VoronoiGraph voronoi_graph(const Complex& complex, std::span<const VoronoiPatch> patches, const Context& context) {
+  validate(complex);
+  const Complex of_patches = complex_of(complex, patches);
+  VoronoiGraph out = GraphBuilder(of_patches, true, context).build();
+  out.patches.assign(patches.begin(), patches.end());
+  return out;
 }
 
 std::vector<VoronoiRegion> voronoi_regions(const Complex& complex) {

@@ -405,6 +405,32 @@ def test_options_of_graphs(parts, tmp_path):
     assert "--graph" in run("voronoi", box, "--medial", "--graph", tmp_path / "g.json", status=2)[1]
 
 
+def test_graphs_of_patches(tmp_path):
+    """A fine disc has three sheets and one closed seam. The summary, the graph and the columns name the same patches."""
+    disc, walls, axis = tmp_path / "disc.ply", tmp_path / "walls.npz", tmp_path / "axis.npz"
+    run("make", "cylinder", "--sides", 48, "--height", 0.5, "-o", disc)
+    graph_of = ("--graph", tmp_path / "g.json", "--patch-angle", 30)
+    found = run_json("voronoi", disc, "--walls", "-o", walls, *graph_of)
+    assert found["graph"] == {"walls": 3, "seams": 1, "junctions": 0}
+    graph, columns = json.loads((tmp_path / "g.json").read_text()), np.load(walls)
+    assert graph["patches"] == found["patches"] and [patch["kind"] for patch in graph["patches"]] == ["face"] * 3
+    patch = {site: k for k, each in enumerate(graph["patches"]) for site in each["sites"]}
+    pairs = np.sort([[patch[site] for site in columns[f"triangle_site_{side}"].tolist()] for side in "ab"], axis=0)
+    assert (pairs[0] == columns["triangle_patch_a"]).all() and (pairs[1] == columns["triangle_patch_b"]).all()
+
+    found = run_json("voronoi", disc, "--medial", "--theta", 20, "-o", axis, *graph_of)
+    graph, columns = json.loads((tmp_path / "g.json").read_text()), np.load(axis)
+    assert found["axis"]["graph"]["sheets"] == len(graph["sheets"]) == 3
+    assert (len(graph["seams"]), len(graph["junctions"])) == (1, 0)
+    for sheet in graph["sheets"]:
+        own = columns["triangle_patch_sheet"] == sheet["sheet"]
+        assert own.sum() == sheet["triangles"] > 0
+        sides = [set(columns[f"triangle_patch_{side}"][own].tolist()) for side in "ab"]
+        assert sides == [{number} for number in sheet["sides"]]
+    assert run_json("voronoi", disc, "--walls")["patches"] is None
+    assert "--patch-angle" in run("voronoi", disc, "--patch-angle", 181, status=2)[1]
+
+
 # ---- Cleaning ----
 
 

@@ -65,6 +65,7 @@ def results():
         "voronoi_complex.report": diagram.report,
         "voronoi_complex.graph": diagram.graph(),
         "voronoi_complex.sites": diagram.sites(),
+        "voronoi_complex.patches": diagram.patches(),
         "voronoi_complex.regions": diagram.regions(),
         "centreline": lines,
         "centreline of a label": lines[0],

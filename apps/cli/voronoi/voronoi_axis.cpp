@@ -27,6 +27,9 @@ void VoronoiAxisTexts::add_to(const Command& command) {
   add_graph_option(command, graph,
                    "Also write a graph of regions, walls, seams and junctions, or with --medial of sheets, seams, "
                    "curves and junctions");
+  add_text_option(command, "--patch-angle", patch_angle, "DEG",
+                  "Join sites of smooth patches: faces that meet in edges bent by at most DEG degrees, 0 to 180 (30 "
+                  "suits most meshes). The graph is that of the patches; files get columns patch_a and patch_b");
 }
 
 std::string VoronoiAxisTexts::given() const {
@@ -39,6 +42,7 @@ VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts) {
   if (texts.theta) out.theta = parse_angle("--theta", *texts.theta);
   if (texts.decimate) out.decimate = parse_non_negative("--decimate", *texts.decimate);
   out.graph = parse_graph(texts.graph);
+  if (texts.patch_angle) out.patch_angle = parse_angle("--patch-angle", *texts.patch_angle);
   return out;
 }
 
@@ -61,6 +65,8 @@ Json add_graph(VoronoiAxis& out, const Complex& axis, const SolidInput& input, c
   Stopwatch watch;
   AxisGraphOptions how;
   how.homotopy_angle = options.theta;
+  how.of_patches = options.patch_angle.has_value();
+  how.patch_angle = options.patch_angle.value_or(how.patch_angle);
   const AxisGraph graph = axis_graph(axis, input.mesh.mesh, how, context);
   out.drafts.emplace_back(*options.graph);
   write_graph(out.drafts.back().path(), graph, metadata);

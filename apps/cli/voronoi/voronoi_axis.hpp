@@ -15,9 +15,9 @@
 
 namespace blum::cli {
 
-/// Texts of the options --theta and --decimate, and of --graph, which applies to all parts.
+/// Texts of the options --theta and --decimate, and of --graph and --patch-angle, which apply to all parts.
 struct VoronoiAxisTexts {
-  std::optional<std::string> theta, decimate, graph;
+  std::optional<std::string> theta, decimate, graph, patch_angle;
 
   void add_to(const Command& command);
   /// Returns the name of the first given option that is only for medial axes. Returns an empty text if none is given.
@@ -28,6 +28,7 @@ struct VoronoiAxisOptions {
   double theta = 1;     ///< degrees; the default is above the angles by which rounding to 32 bits bends faces
   double decimate = 0;  ///< mesh units; 0 keeps all vertices
   std::optional<std::filesystem::path> graph;
+  std::optional<double> patch_angle;  ///< degrees; without a value, sites are not joined
 };
 
 /// @throws UsageError.
@@ -43,7 +44,9 @@ struct VoronoiAxis {
   std::vector<PhaseTime> phases;
 };
 
-/// @param walls   result of voronoi_complex() for VoronoiPart::medial_axis.
+/// @param walls   result of voronoi_complex() for VoronoiPart::medial_axis. If `options.patch_angle` is given, it has
+/// the
+///                columns of add_patch_columns().
 /// @param source, weld  metadata of the file: name of the input and weld tolerance.
 [[nodiscard]] VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input,
                                             const VoronoiAxisOptions& options, const std::filesystem::path& source,

@@ -20,6 +20,7 @@
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_patches.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "blum/voronoi/voronoi_sites.hpp"
 #include "commands.hpp"
@@ -47,6 +48,7 @@ constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: cubes of at most 1/32 of the box
   blum voronoi part.stl -o part.vtp --tolerance 0.1    at most 0.1 mesh units from the exact walls
   blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    remove needles first, and write that mesh
+  blum voronoi part.stl --walls --graph part.json --patch-angle 30    graph of smooth patches instead of triangles
   blum voronoi part.stl --json -                   report only: sites, cubes, certificate
 
 Exit status 3: the complex is not certified. Only --allow-uncertified writes it.)";
@@ -258,14 +260,37 @@ Request parse(const Arguments& a) {
   return r;
 }
 
+/// The patches of the sites, if --patch-angle is given.
+using Patches = std::optional<std::vector<VoronoiPatch>>;
+
+/// If --patch-angle is given, finds the patches, and adds their columns to the complex.
+Patches add_patches(const Request& r, const MeshView& mesh, std::span<const VoronoiSite> sites, Complex& complex,
+                    const Context& context) {
+  if (!r.axis.patch_angle) return std::nullopt;
+  VoronoiPatchOptions options;
+  options.patch_angle = *r.axis.patch_angle;
+  std::vector<VoronoiPatch> patches = voronoi_patches(mesh, sites, options, context);
+  add_patch_columns(complex, patches);
+  return patches;
+}
+
 /// If --graph is given, computes and writes the graph of the diagram's parts. VoronoiComplex.graph() in Python returns
 /// the same graph.
 std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, std::span<const VoronoiSite> sites,
-                                       const VoronoiComplex& made, const Context& context) {
+                                       const Patches& patches, const VoronoiComplex& made, const Context& context) {
   if (a.medial || !r.axis.graph) return std::nullopt;
-  VoronoiGraph graph = voronoi_graph(made.complex, context);
+  VoronoiGraph graph = patches ? voronoi_graph(made.complex, *patches, context) : voronoi_graph(made.complex, context);
   write_voronoi_graph(*r.axis.graph, graph, sites, metadata_of(a, r, made.report));
   return graph;
+}
+
+std::string patches_text(const std::vector<VoronoiPatch>& patches) {
+  const auto count_of = [&](SiteKind kind) {
+    return static_cast<std::size_t>(
+        std::count_if(patches.begin(), patches.end(), [&](const VoronoiPatch& one) { return one.kind == kind; }));
+  };
+  return count_text(count_of(SiteKind::face)) + " of faces, " + count_text(count_of(SiteKind::edge)) +
+         " of reflex edges, " + count_text(count_of(SiteKind::vertex)) + " of reflex vertices";
 }
 
 std::string graph_text(const VoronoiGraph& graph) {
@@ -309,6 +334,15 @@ Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::v
   return out;
 }
 
+/// Returns the names of the files that were written.
+std::vector<std::string> outputs_of(const Arguments& a, bool is_written, bool is_graph_written) {
+  std::vector<std::string> out;
+  if (a.cleaned) out.push_back(*a.cleaned);
+  if (is_written) out.push_back(*a.output);
+  if (is_graph_written) out.push_back(*a.axis.graph);
+  return out;
+}
+
 void run(const Arguments& a) {
   const Request r = parse(a);
   const fs::path path = a.input;
@@ -331,12 +365,14 @@ void run(const Arguments& a) {
   static_cast<void>(watch.lap());
   const Counts counts(made.complex);
   const std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, found, context);
+  const Patches patches = add_patches(r, input.mesh.mesh, sites, made.complex, context);
+  if (patches) phases.push_back({"patches", watch.lap()});
   std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
   const bool may_write = mismatches.empty() || a.allow_uncertified;
   bool is_written = a.output && may_write;
   std::optional<VoronoiAxis> axis;
   std::optional<VoronoiGraph> graph;
-  if (may_write) graph = make_graph(a, r, sites, made, context);
+  if (may_write) graph = make_graph(a, r, sites, patches, made, context);
   if (graph) phases.push_back({"graph", watch.lap()});
   if (is_written && a.medial) {
     axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
@@ -367,6 +403,7 @@ void run(const Arguments& a) {
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
   facts["sites"] = to_json(sites);
+  facts["patches"] = patches ? Json(to_json(*patches)) : Json(nullptr);
   facts["regions"] = nullptr;
   if (r.options.part == VoronoiPart::all) {
     facts["regions"] = to_json(graph ? graph->regions : voronoi_regions(made.complex));
@@ -377,21 +414,17 @@ void run(const Arguments& a) {
           : Json(nullptr);
   facts["axis"] = axis ? axis->json : Json(nullptr);
   Json json = answer_json("voronoi", facts);
-  Json outputs = Json::array();
-  if (a.cleaned) outputs.push_back(*a.cleaned);
-  if (is_written) outputs.push_back(*a.output);
   const bool is_graph_written = graph || (axis && is_written && r.axis.graph);
-  if (is_graph_written) outputs.push_back(r.axis.graph->string());
+  const std::vector<std::string> outputs = outputs_of(a, is_written, is_graph_written);
   add_run_facts(json, spent, context, warnings, outputs);
   TextTable table;
   const double size = bounds(input.mesh.mesh).diagonal();
   if (cleaning) add_cleaning(*cleaning, *r.clean, size, table);
   add_facts(found, r.options.part, counts, size, table);
+  if (patches) table.add("patches", patches_text(*patches));
   if (axis) table.add(axis->table);
   if (graph) table.add("graph", graph_text(*graph));
-  if (a.cleaned) table.add("wrote", *a.cleaned);
-  if (is_written) table.add("wrote", *a.output);
-  if (is_graph_written) table.add("wrote", r.axis.graph->string());
+  for (const std::string& output : outputs) table.add("wrote", output);
   table.add(input.table);
   spent.add_to(table);
   report(a.report, json, table);

@@ -32,7 +32,8 @@ namespace blum {
 ///               `kind`), `wall0`, `seam0` and `junction0`. An edge `incidence` joins a region and one of its walls. It
 ///               may also join a wall and one of its seams, or a seam and one of its junctions. If the graph has
 ///               regions, an edge `neighbours` joins two neighbouring regions. Its `area` is the area of the walls
-///               between the two regions. The other attributes are all members that are numbers or words, with their
+///               between the two regions. In a graph of patches, nodes `region3` are those of patches, with the
+///               patch's `kind`. The other attributes are all members that are numbers or words, with their
 ///               names; components of vectors end with _x, _y, _z. Metadata are attributes of the graph.
 ///
 /// A file appears under its name only when it is complete.

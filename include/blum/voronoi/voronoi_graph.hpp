@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/voronoi/voronoi_patches.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 
 namespace blum {
@@ -78,12 +80,14 @@ struct Description<VoronoiJunction> {
 };
 
 /// Voronoi diagram as a graph of regions, walls, seams and junctions. Indices of walls, seams and junctions are
-/// positions in the lists below.
+/// positions in the lists below. In a graph of patches, `patches` is not empty. All numbers of sites in regions, walls,
+/// seams and junctions are then numbers of patches, positions in this list.
 struct VoronoiGraph {
   std::vector<VoronoiRegion> regions;      ///< By ascending site. Empty if the complex does not contain the surface.
   std::vector<VoronoiWall> walls;          ///< In the order of their first triangles.
   std::vector<VoronoiSeam> seams;          ///< In the order of their first edges.
   std::vector<VoronoiJunction> junctions;  ///< By ascending vertex.
+  std::vector<VoronoiPatch> patches;       ///< The patches, in a graph of patches. Otherwise empty.
 };
 
 template <>
@@ -95,6 +99,8 @@ struct Description<VoronoiGraph> {
       Member{"walls", &VoronoiGraph::walls, "", "connected parts of borders between two regions"},
       Member{"seams", &VoronoiGraph::seams, "", "chains of edges along which regions of three or more sites meet"},
       Member{"junctions", &VoronoiGraph::junctions, "", "points in which seams meet or end"},
+      Member{"patches", &VoronoiGraph::patches, "",
+             "patches, if sites were joined: then numbers of sites above are positions in this list"},
   };
 };
 
@@ -109,5 +115,14 @@ struct Description<VoronoiGraph> {
 /// @throws InvalidOption if a column is missing; InvalidMesh with the text of problem_of(complex); Cancelled.
 /// Cost: O(n log n) for n triangles; about 1 us and 100 bytes per triangle.
 [[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, const Context& context = {});
+
+/// Returns the same graph for patches of sites: the sites of a patch count as one site. Walls between two sites of one
+/// patch are left out, even where distant parts of the patch face each other. Walls of neighbouring pairs of sites join
+/// if their pairs of patches are equal. A seam is left out if only two patches meet along it. A junction is left out if
+/// one seam passes it, and no further patch meets it. A closed seam may remain without a junction.
+/// @param patches  result of voronoi_patches() for the sites of the complex, or another division of these sites.
+/// @throws InvalidOption also if a site of the complex belongs to no patch, or to two.
+[[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, std::span<const VoronoiPatch> patches,
+                                         const Context& context = {});
 
 }  // namespace blum

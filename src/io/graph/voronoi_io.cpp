@@ -38,11 +38,13 @@ void add_stated(const FileMetadata& metadata, const Add& add) {
   }
 }
 
-/// Returns a graph with one node for each site, wall, seam and junction. The node of a site represents its region.
+/// Returns a graph with one node for each site, wall, seam and junction. The node of a site represents its region. In a
+/// graph of patches, patches replace the sites.
 FlatGraph flattened(const VoronoiGraph& graph, std::span<const VoronoiSite> sites) {
   const auto region = [](std::int32_t site) { return FlatGraph::numbered("region", static_cast<std::size_t>(site)); };
   FlatGraph out;
-  for (std::size_t k = 0; k < sites.size(); ++k) out.add_node("region", k, sites[k]);
+  for (std::size_t k = 0; k < graph.patches.size(); ++k) out.add_node("region", k, graph.patches[k]);
+  for (std::size_t k = 0; k < sites.size() && graph.patches.empty(); ++k) out.add_node("region", k, sites[k]);
   for (const VoronoiRegion& one : graph.regions) {
     graph_files::add_members(one, out.nodes[static_cast<std::size_t>(one.site)].attributes);
   }
@@ -77,7 +79,8 @@ FlatGraph flattened(const VoronoiGraph& graph, std::span<const VoronoiSite> site
 
 void write_voronoi_graph(const std::filesystem::path& path, const VoronoiGraph& graph,
                          std::span<const VoronoiSite> sites, const FileMetadata& metadata) {
-  const auto is_known = [&](std::int32_t site) { return site >= 0 && static_cast<std::size_t>(site) < sites.size(); };
+  const std::size_t count = graph.patches.empty() ? sites.size() : graph.patches.size();
+  const auto is_known = [&](std::int32_t site) { return site >= 0 && static_cast<std::size_t>(site) < count; };
   for (const VoronoiRegion& region : graph.regions) {
     if (!is_known(region.site)) throw InvalidOption("graph of a Voronoi diagram: it names sites that are not listed");
   }
