@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "blum/core/sort_unique.hpp"
 #include "voronoi/label_geometry.hpp"
@@ -152,28 +153,47 @@ std::vector<LocalStar::Plane> LocalStar::planes_of_groups() const {
   return planes;
 }
 
-std::vector<SeamRay> LocalStar::rays() const {
-  std::vector<SeamRay> out;
-  const auto add_both = [&](const Vec3d& direction) {
-    add(direction, out);
-    add(-direction, out);
+std::vector<Vec3d> LocalStar::facet_normals() const {
+  std::vector<Vec3d> out;
+  // Many gradients may lie in one facet, so no facet is found twice.
+  std::vector<std::pair<Vec3d, double>> facets;
+  const auto is_in_a_facet = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    return std::any_of(facets.begin(), facets.end(), [&](const auto& facet) {
+      const auto& [normal, level] = facet;
+      return std::abs(dot(a, normal) - level) <= angle_tolerance_ &&
+             std::abs(dot(b, normal) - level) <= angle_tolerance_ &&
+             std::abs(dot(c, normal) - level) <= angle_tolerance_;
+    });
   };
   for (std::size_t a = 0; a < groups_.size(); ++a) {
     for (std::size_t b = a + 1; b < groups_.size(); ++b) {
       for (std::size_t c = b + 1; c < groups_.size(); ++c) {
         const Vec3d normal = cross(groups_[b] - groups_[a], groups_[c] - groups_[a]);
-        if (!(length(normal) > 1e-12)) continue;
+        if (!(length(normal) > 1e-12) || is_in_a_facet(groups_[a], groups_[b], groups_[c])) continue;
         const Vec3d h = unit(normal);
         const double level = dot(groups_[a], h);
         const auto is_lowest = [&](double sign) {
           return std::all_of(groups_.begin(), groups_.end(),
                              [&](const Vec3d& g) { return (dot(g, h) - level) * sign >= -angle_tolerance_; });
         };
-        if (is_lowest(1)) add(h, out);
-        if (is_lowest(-1)) add(-h, out);
+        const std::size_t before = out.size();
+        if (is_lowest(1)) out.push_back(h);
+        if (is_lowest(-1)) out.push_back(-h);
+        constexpr std::size_t many = 8;
+        if (out.size() > before && groups_.size() > many) facets.emplace_back(h, level);
       }
     }
   }
+  return out;
+}
+
+std::vector<SeamRay> LocalStar::rays() const {
+  std::vector<SeamRay> out;
+  const auto add_both = [&](const Vec3d& direction) {
+    add(direction, out);
+    add(-direction, out);
+  };
+  for (const Vec3d& h : facet_normals()) add(h, out);
   const std::vector<Plane> planes = planes_of_groups();
   for (const Plane& plane : planes) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {

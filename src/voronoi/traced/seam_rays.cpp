@@ -27,7 +27,7 @@ std::vector<LeavingSeam> seams_in_plane(const TracedSites& sites, const SeamTrac
   std::vector<LeavingSeam> out;
   constexpr double aside = 0.2;
   for (const Vec3d& start : tracer.seam_points(ray.sites, at + ray.direction * step, ray.direction, aside * step)) {
-    const std::vector<Index> closest = tracer.closest(start, sites.tolerance()).sites;
+    const std::vector<Index> closest = tracer.closest(start, sites.tolerance(), ray.sites[0]).sites;
     if (!std::includes(ray.sites.begin(), ray.sites.end(), closest.begin(), closest.end())) continue;
     const auto curve = tracer.curve_of(closest, start, ray.direction);
     if (!curve) continue;

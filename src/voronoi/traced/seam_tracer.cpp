@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "voronoi/label_geometry.hpp"
+#include "voronoi/traced/line_contact.hpp"
 
 namespace blum::voronoi {
 namespace {
@@ -17,8 +18,9 @@ bool contains(const std::vector<Index>& sorted, Index i) {
   return std::binary_search(sorted.begin(), sorted.end(), i);
 }
 
-/// Largest step, relative to the radius.
+/// Largest steps, relative to the radius. Along lines, contacts are known exactly.
 constexpr double longest_step = 0.5;
+constexpr double longest_step_of_line = 1;
 constexpr int most_steps = 20000;
 /// A curve with a smaller radius has reached the surface, in multiples of the tolerance.
 constexpr double touching = 512;
@@ -30,6 +32,14 @@ struct SeamTracer::Room {
   double step = 0;
   Index site = 0;
 };
+
+bool SeamTracer::is_straight(const TracedCurve& curve) const {
+  return std::all_of(curve.surfaces.begin(), curve.surfaces.end(), [&](const TracedSurface& surface) {
+    if (surface.is_plane()) return true;
+    const SiteKind first = sites_[surface.first].kind;
+    return first == sites_[surface.second].kind && first != SiteKind::edge;
+  });
+}
 
 double SeamTracer::value(const TracedSurface& surface, const Vec3d& x) const {
   if (surface.is_plane()) return dot(surface.normal, x - surface.point);
@@ -153,6 +163,14 @@ std::optional<TracedCurve> SeamTracer::curve_of(const std::vector<Index>& found,
   return is_found ? std::optional(curve) : std::nullopt;
 }
 
+bool SeamTracer::flat_meeting(const std::vector<Index>& near, const Vec3d& at) const {
+  const double radius = sites_.distance(near[0], at);
+  return std::all_of(near.begin(), near.end(), [&](Index i) {
+    return sites_[i].kind == SiteKind::face && std::abs(sites_.distance(i, at) - radius) <= sites_.tolerance() &&
+           sites_.sides_at(i, at, 64 * sites_.tolerance()).empty();
+  });
+}
+
 std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const Vec3d& at, const Vec3d& normal,
                                            double reach) const {
   std::vector<TracedSurface> surfaces;
@@ -178,6 +196,7 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
         const Vec3d first = slope(surfaces[a], *found), second = slope(surfaces[b], *found);
         if (length(cross(first, second)) < least_angle * length(first) * length(second)) continue;
         if (length(first) < 1e-9 || length(second) < 1e-9) continue;
+        if (flat_meeting(near, *found)) return {*found};
         const bool is_known = std::any_of(
             out.begin(), out.end(), [&](const Vec3d& p) { return length(p - *found) <= 16 * sites_.tolerance(); });
         if (!is_known) out.push_back(*found);
@@ -187,41 +206,65 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
   return out;
 }
 
-TracedSites::Closest SeamTracer::closest(const Vec3d& x, double tolerance) const {
-  TracedSites::Closest out = sites_.closest(x, tolerance);
+TracedSites::Closest SeamTracer::closest(const Vec3d& x, double tolerance, Index site) const {
+  TracedSites::Closest out = sites_.closest(x, tolerance, std::abs(sites_.distance(site, x)));
   work_.done += out.examined;
   return out;
 }
 
 std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                 double radius, double most) const {
+  std::vector<Room> out =
+      is_straight(curve) ? rooms_of_line(curve, x, along, radius, most) : rooms_of_bend(curve, x, along, radius, most);
+  std::sort(out.begin(), out.end(), [](const Room& a, const Room& b) { return a.step < b.step; });
+  return out;
+}
+
+std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                        double radius, double most) const {
+  std::vector<Room> out;
+  const SeamLine line{curve.sites[0], x, along};
+  // The radius is convex along the line. So all balls around its points lie in the ball around its middle.
+  const Vec3d middle = x + along * (0.5 * most);
+  const double largest = std::max(radius, sites_.distance(line.own, x + along * most));
+  sites_.for_each_within(middle, largest + 0.5 * most + 4 * sites_.tolerance(), [&](Index i) {
+    ++work_.done;
+    if (contains(curve.sites, i)) return;
+    const double contact = way_to_contact(sites_, line, i, most);
+    if (contact >= most) return;
+    const double beyond = sites_.outside(i, x, most);
+    if (beyond >= most) return;
+    const double gap = sites_.least_distance(i, x, beyond) - radius;
+    const double step = std::max({contact, gap / 2, beyond});
+    if (step < most) out.push_back({step, i});
+  });
+  return out;
+}
+
+std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                        double radius, double most) const {
   std::vector<Room> out;
   const double reach = radius + 2 * most;
-  // Between faces, the curve is straight and its own distance changes evenly. The distance of a site is convex there.
-  const bool is_straight = std::all_of(curve.sites.begin(), curve.sites.end(),
-                                       [&](Index i) { return sites_[i].kind == SiteKind::face; });
-  // Otherwise, second derivatives of distances along the curve are a few times its curvature.
-  const double bend = is_straight ? 0 : 8 / std::max(radius, sites_.tolerance());
+  // Second derivatives of distances along the curve are a few times its curvature.
+  const double bend = 8 / std::max(radius, sites_.tolerance());
   // Returns the first positive root of a + b s - bend/2 s^2.
-  const auto root = [&](double a, double b) {
-    if (bend > 0) return (b + std::sqrt(b * b + 2 * bend * a)) / bend;
-    return b < 0 ? a / -b : std::numeric_limits<double>::infinity();
-  };
+  const auto root = [&](double a, double b) { return (b + std::sqrt(b * b + 2 * bend * a)) / bend; };
   const double own_rate = dot(sites_.gradient(curve.sites[0], x), along);
   sites_.for_each_within(x, reach, [&](Index i) {
     ++work_.done;
     if (contains(curve.sites, i)) return;
     const TracedSite& site = sites_[i];
-    const double beyond = sites_.outside(i, x);
+    if (std::abs(sites_.distance(i, x)) - radius >= 2 * most) return;
+    const double beyond = sites_.outside(i, x, most);
     if (beyond >= most) return;
-    double step = std::max((sites_.least_distance(i, x) - radius) / 2, beyond);
-    if (beyond > 0 && site.kind != SiteKind::face) {
+    double step = std::max((sites_.least_distance(i, x, beyond) - radius) / 2, beyond);
+    if (beyond > 0 && (site.kind != SiteKind::face || site.is_convex)) {
       for (const DomainSide& side : site.sides) {
         const double height = -side.height(x);
         if (height > 0) step = std::max(step, std::min(root(height, -dot(side.normal, along)), most));
       }
     }
-    if (beyond > 0 && site.kind == SiteKind::face) {
+    if (beyond > 0 && site.kind == SiteKind::face && !site.is_convex && !site.index) {
       const TracedSites::OutsideSide outside = sites_.outside_side(i, x);
       const double height = std::max(-outside.side->height(x), 0.0);
       step = std::max(step, std::min({root(height, -dot(outside.side->normal, along)), outside.others, most}));
@@ -231,7 +274,6 @@ std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const 
     if (gap > 0) step = std::max(step, std::min(root(gap, dot(sites_.gradient(i, x), along) - own_rate), most));
     if (step < most) out.push_back({std::max(step, 0.0), i});
   });
-  std::sort(out.begin(), out.end(), [](const Room& a, const Room& b) { return a.step < b.step; });
   return out;
 }
 
@@ -244,22 +286,23 @@ std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site
     if (!found) return;
     const double way = dot(*found - x, along);
     if (way <= 0 || way >= std::min(least, most) || way < 0.5 * length(*found - x)) return;
-    const TracedSites::Closest there = closest(*found, sites_.tolerance());
+    const TracedSites::Closest there = closest(*found, sites_.tolerance(), curve.sites[0]);
     if (!contains(there.sites, site)) return;
     if (!std::includes(there.sites.begin(), there.sites.end(), curve.sites.begin(), curve.sites.end())) return;
     least = way;
     best = found;
   };
   const double infinite = least;
-  for (const DomainSide& side : sites_[site].sides) {
+  sites_.for_each_side(site, x, 2 * radius, [&](const DomainSide& side) {
     if (side.is_open) consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
-  }
+  });
   for (const Index own : curve.sites) {
-    for (const DomainSide& side : sites_[own].sides) {
+    // The curve passes a side within the way.
+    sites_.for_each_side(own, x, 2 * radius, [&](const DomainSide& side) {
       if (side.is_open && std::abs(side.height(x)) < radius) {
         consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
       }
-    }
+    });
   }
   // At a side of its domain, the distance of a site touches that of its neighbour, and the side gives the place more
   // precisely.
@@ -271,7 +314,7 @@ std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site
 }
 
 std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
-                                                      double radius) const {
+                                                      double radius, const std::vector<Room>& near) const {
   std::vector<std::uint32_t> common = sites_[curve.sites[0]].vertices;
   for (std::size_t k = 1; k < curve.sites.size() && !common.empty(); ++k) {
     std::vector<std::uint32_t> both;
@@ -284,11 +327,14 @@ std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, 
     const double size = length(way);
     // All surfaces of the curve are cones with the vertex as their apex, so it is straight.
     if (dot(way, along) < (1 - 1e-9) * size) continue;
-    const std::vector<Room> near = rooms(curve, x, along, radius, size);
-    const bool is_free = std::all_of(near.begin(), near.end(), [&](const Room& room) {
-      return std::binary_search(sites_[room.site].vertices.begin(), sites_[room.site].vertices.end(), v);
-    });
-    if (is_free) return v;
+    const auto are_free = [&](const std::vector<Room>& found) {
+      return std::all_of(found.begin(), found.end(), [&](const Room& room) {
+        const std::vector<std::uint32_t>& own = sites_[room.site].vertices;
+        return room.step >= size || std::binary_search(own.begin(), own.end(), v);
+      });
+    };
+    // Mostly, a site near x shows that the way is not free.
+    if (are_free(near) && are_free(rooms(curve, x, along, radius, size))) return v;
   }
   return std::nullopt;
 }
@@ -303,7 +349,7 @@ bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec
     const double share = k < parts ? static_cast<double>(k) / parts : 0.999;
     const auto at = point_in_plane(curve, from + way * share, way / size);
     if (!at || length(*at - from) > 1.5 * size) return false;
-    if (closest(*at, sites_.tolerance()).sites != curve.sites) return false;
+    if (closest(*at, sites_.tolerance(), curve.sites[0]).sites != curve.sites) return false;
   }
   return true;
 }
@@ -349,10 +395,10 @@ std::optional<Vec3d> SeamTracer::touching_point(const TracedCurve& curve, Index 
   return best;
 }
 
-std::optional<Vec3d> SeamTracer::meeting_point(const Vec3d& x, double radius) const {
+std::optional<Vec3d> SeamTracer::meeting_point(const TracedCurve& curve, const Vec3d& x, double radius) const {
   constexpr double loose = 64;
   const double reach = loose * sites_.tolerance();
-  const TracedSites::Closest near = closest(x, reach);
+  const TracedSites::Closest near = closest(x, reach, curve.sites[0]);
   if (near.sites.size() < 2) return std::nullopt;
   std::vector<TracedSurface> surfaces;
   for (std::size_t k = 0; k < near.sites.size(); ++k) {
@@ -383,7 +429,7 @@ std::optional<Vec3d> SeamTracer::meeting_point(const Vec3d& x, double radius) co
     if (length(step) < 1e-15 * sites_.extent()) break;
   }
   if (!(length(best - x) <= std::max(reach, sites_.blur(radius)))) return std::nullopt;
-  const TracedSites::Closest found = closest(best, sites_.tolerance());
+  const TracedSites::Closest found = closest(best, sites_.tolerance(), curve.sites[0]);
   return found.sites == near.sites ? std::optional(best) : std::nullopt;
 }
 
@@ -441,9 +487,9 @@ struct SeamTracer::Run {
   }
 
   /// Returns true if the trace ends at the surface.
-  bool ends_at_surface(bool is_first) {
+  bool ends_at_surface(bool is_first, const std::vector<Room>& near) {
     if (!is_first || radius > tolerance()) {
-      if (const auto v = tracer.vertex_ahead(curve, x, along, radius)) {
+      if (const auto v = tracer.vertex_ahead(curve, x, along, radius, near)) {
         out.points.push_back(tracer.sites_.vertices()[*v]);
         out.end = TraceEnd::vertex;
         out.vertex = *v;
@@ -462,10 +508,10 @@ struct SeamTracer::Run {
   std::vector<Index> refined(Index site, const std::vector<Index>& found) {
     const Vec3d at = out.points.back();
     const auto touched = tracer.touching_point(curve, site, at, radius);
-    const auto met = tracer.meeting_point(touched ? *touched : at, radius);
+    const auto met = tracer.meeting_point(curve, touched ? *touched : at, radius);
     for (const std::optional<Vec3d>& place : {met, touched}) {
       if (!place) continue;
-      std::vector<Index> there = tracer.closest(*place, tolerance()).sites;
+      std::vector<Index> there = tracer.closest(*place, tolerance(), curve.sites[0]).sites;
       if (!std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end())) continue;
       out.points.back() = *place;
       return there;
@@ -483,7 +529,7 @@ struct SeamTracer::Run {
       if (!found || length(*found - start) <= tracer.sites_.precision().apart) continue;
       const double size = length(*found - x);
       if (size > 2 * most) continue;
-      const TracedSites::Closest there = tracer.closest(*found, tolerance());
+      const TracedSites::Closest there = tracer.closest(*found, tolerance(), curve.sites[0]);
       if (there.sites == left && length(*found - start) <= tracer.sites_.blur(there.radius)) continue;
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
@@ -505,7 +551,7 @@ struct SeamTracer::Run {
         x = *touched;
         out.points.back() = x;
       }
-      const TracedSites::Closest there = tracer.closest(x, 4 * tolerance());
+      const TracedSites::Closest there = tracer.closest(x, 4 * tolerance(), curve.sites[0]);
       if (there.sites != left || length(x - start) > tracer.sites_.blur(radius)) {
         end_at(there.sites, there.radius);
         return std::nullopt;
@@ -535,7 +581,7 @@ struct SeamTracer::Run {
     if (!(step < 0.5 * leap && way > 64 * tolerance())) return false;
     const auto next = tracer.point_in_plane(curve, x + along * leap, along);
     if (!next || length(*next - x) >= 1.5 * leap || !tracer.is_clear(curve, x, *next)) return false;
-    return tracer.closest(*next, tolerance()).sites == curve.sites && go_to(next, leap);
+    return tracer.closest(*next, tolerance(), curve.sites[0]).sites == curve.sites && go_to(next, leap);
   }
 
   /// Takes a step, or a shorter one if the curve bends.
@@ -564,11 +610,12 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
   run.out.points.push_back(start);
   if (dot(run.along, towards) < 0) run.along = -run.along;
   if (length(run.along) == 0) return std::move(run.out);
+  const double longest = is_straight(curve) ? longest_step_of_line : longest_step;
   for (int k = 0; k < most_steps && !work_.is_exhausted(); ++k) {
     run.radius = sites_.distance(curve.sites[0], run.x);
-    run.most = longest_step * std::max(run.radius, 64 * sites_.tolerance());
+    run.most = longest * std::max(run.radius, 64 * sites_.tolerance());
     const std::vector<Room> near = rooms(curve, run.x, run.along, run.radius, 2 * run.most);
-    if (run.ends_at_surface(k == 0) || run.ends_at_event(near)) break;
+    if (run.ends_at_surface(k == 0, near) || run.ends_at_event(near)) break;
     std::optional<double> step = run.long_enough(near.empty() ? run.most : std::min(run.most, near.front().step), near);
     if (!step) break;
     if (run.leaps(*step)) continue;

@@ -80,7 +80,8 @@ class SeamTracer {
                                                const Vec3d& normal, double reach) const;
 
   /// Returns the closest sites of a point.
-  [[nodiscard]] TracedSites::Closest closest(const Vec3d& x, double tolerance) const;
+  /// @param site  probably one of them.
+  [[nodiscard]] TracedSites::Closest closest(const Vec3d& x, double tolerance, TracedSites::Index site) const;
 
   /// Returns the points equally far from two sites, near one of them. For edges from one vertex, and for parallel
   /// edges, this is a plane.
@@ -89,8 +90,15 @@ class SeamTracer {
  private:
   struct Room;
   struct Run;
+  /// Returns true if faces meet in a point, all inside their domains. Their distances are linear, so no seam of some of
+  /// them passes near.
+  [[nodiscard]] bool flat_meeting(const std::vector<TracedSites::Index>& near, const Vec3d& at) const;
   [[nodiscard]] std::vector<Room> rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along, double radius,
                                         double most) const;
+  [[nodiscard]] std::vector<Room> rooms_of_line(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                double radius, double most) const;
+  [[nodiscard]] std::vector<Room> rooms_of_bend(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                double radius, double most) const;
   [[nodiscard]] std::optional<Vec3d> solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const;
   [[nodiscard]] std::optional<Vec3d> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                                 const Vec3d& along, double radius) const;
@@ -99,13 +107,15 @@ class SeamTracer {
                                                     double radius) const;
   /// Returns the point near x where all sites meet that are nearly as close, if they meet within the tolerance. It is
   /// more precise than x if curves touch there.
-  [[nodiscard]] std::optional<Vec3d> meeting_point(const Vec3d& x, double radius) const;
+  [[nodiscard]] std::optional<Vec3d> meeting_point(const TracedCurve& curve, const Vec3d& x, double radius) const;
   /// Sets the end of a trace that reached the surface: at a vertex if one is close.
   void end_at_border(Trace& trace) const;
   /// Returns true if no other site is as close at points of the curve between two of its points.
   [[nodiscard]] bool is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to) const;
   [[nodiscard]] std::optional<std::uint32_t> vertex_ahead(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
-                                                          double radius) const;
+                                                          double radius, const std::vector<Room>& near) const;
+  /// Returns true if both surfaces of a curve are planes.
+  [[nodiscard]] bool is_straight(const TracedCurve& curve) const;
   [[nodiscard]] double value(const TracedSurface& surface, const Vec3d& x) const;
   [[nodiscard]] Vec3d slope(const TracedSurface& surface, const Vec3d& x) const;
 

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/union_find.hpp"
+#include "blum/geometry/box_bvh.hpp"
 #include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/plane_polygon.hpp"
 #include "voronoi/label_geometry.hpp"
@@ -71,6 +73,17 @@ class Assembly {
   void list_triangles() {
     triangles_of_.resize(sites_.size());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) triangles_of_[sites_.face_of(t)].push_back(t);
+    boxes_of_.resize(sites_.size());
+    for (std::size_t i = 0; i < triangles_of_.size(); ++i) {
+      // A box tree takes longer than a short list.
+      constexpr std::size_t many = 24;
+      if (triangles_of_[i].size() <= many) continue;
+      std::vector<Box3> boxes(triangles_of_[i].size());
+      for (std::size_t k = 0; k < boxes.size(); ++k) {
+        for (const Vec3d& corner : corners_of(triangles_of_[i][k])) boxes[k].extend(corner);
+      }
+      boxes_of_[i].emplace(boxes);
+    }
   }
 
   /// Adds the points of a curve between its ends.
@@ -476,12 +489,19 @@ class Assembly {
     if (site.kind != SiteKind::face) return table_.id({site.kind, site.triangle_or_element});
     std::uint32_t best = triangles_of_[i].front();
     double least = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t t : triangles_of_[i]) {
+    const auto consider = [&](std::uint32_t t) {
       const double squared = squared_length(closest_point_on_triangle(foot, corners_of(t)) - foot);
-      if (!(squared < least)) continue;
+      if (!(squared < least) && !(squared == least && t < best)) return;
       least = squared;
       best = t;
-      if (squared == 0) break;
+    };
+    if (boxes_of_[i]) {
+      boxes_of_[i]->for_each_near(foot, least, [&](std::uint32_t k) {
+        consider(triangles_of_[i][k]);
+        return (1 + 1e-9) * std::sqrt(least);
+      });
+    } else {
+      for (const std::uint32_t t : triangles_of_[i]) consider(t);
     }
     return table_.id({SiteKind::face, best});
   }
@@ -578,6 +598,7 @@ class Assembly {
   TraceWork work_;
   const SeamTracer tracer_;
   std::vector<std::vector<std::uint32_t>> triangles_of_;     ///< of each face
+  std::vector<std::optional<BoxBvh>> boxes_of_;              ///< of the triangles of each large face
   std::vector<std::vector<std::uint32_t>> points_of_curve_;  ///< vertices, both ends included
   std::vector<Vertex> vertices_;
   std::vector<Triangle> triangles_;

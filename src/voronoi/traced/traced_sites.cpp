@@ -13,6 +13,72 @@
 
 namespace blum::voronoi {
 
+namespace {
+
+/// Returns true if a ray along the first axis, from a point of a face's plane, crosses a side.
+bool crosses(const DomainSide& side, double px, double py) {
+  const double ax = side.from[0] - px, ay = side.from[1] - py;
+  const double bx = side.to[0] - px, by = side.to[1] - py;
+  return (ay > 0) != (by > 0) && (bx * ay - ax * by) / (ay - by) > 0;
+}
+
+double squared_distance(const DomainSide& side, double px, double py) {
+  const double ax = side.from[0] - px, ay = side.from[1] - py;
+  const double dx = side.to[0] - side.from[0], dy = side.to[1] - side.from[1];
+  const double t = std::clamp(-(ax * dx + ay * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+  const double qx = ax + t * dx, qy = ay + t * dy;
+  return qx * qx + qy * qy;
+}
+
+bool is_in_polygon(const TracedSite& face, double px, double py) {
+  bool is_inside = false;
+  if (!face.index) {
+    for (const DomainSide& side : face.sides) is_inside ^= crosses(side, px, py);
+    return is_inside;
+  }
+  const double place = (py - face.index->low) * face.index->per_unit;
+  const std::size_t bands = face.index->first.size() - 1;
+  if (!(place >= 0 && place <= static_cast<double>(bands))) return false;
+  const std::size_t band = std::min(static_cast<std::size_t>(place), bands - 1);
+  for (std::uint32_t k = face.index->first[band]; k < face.index->first[band + 1]; ++k) {
+    is_inside ^= crosses(face.sides[face.index->sides[k]], px, py);
+  }
+  return is_inside;
+}
+
+/// Returns the index of the sides of a face.
+SideIndex index_of(const std::vector<DomainSide>& sides) {
+  std::vector<Box3> boxes;
+  Box3 all;
+  for (const DomainSide& side : sides) {
+    Box3& box = boxes.emplace_back();
+    box.extend(Vec3d{side.from[0], side.from[1], 0});
+    box.extend(Vec3d{side.to[0], side.to[1], 0});
+    all.extend(box);
+  }
+  const std::size_t bands = sides.size();
+  SideIndex out{BoxBvh(boxes), all.lower.y, static_cast<double>(bands) / all.size().y, {}, {}};
+  // Rounding may move a side's end to a neighbour's band, so sides belong to one more band on either side.
+  const auto band_of = [&](double y) {
+    return std::min(static_cast<std::size_t>((y - out.low) * out.per_unit), bands - 1);
+  };
+  std::vector<std::vector<std::uint32_t>> lists(bands);
+  for (std::uint32_t k = 0; k < sides.size(); ++k) {
+    const std::size_t from = band_of(boxes[k].lower.y), to = band_of(boxes[k].upper.y);
+    for (std::size_t band = from > 0 ? from - 1 : 0; band <= std::min(to + 1, bands - 1); ++band) {
+      lists[band].push_back(k);
+    }
+  }
+  for (const std::vector<std::uint32_t>& list : lists) {
+    out.first.push_back(static_cast<std::uint32_t>(out.sides.size()));
+    out.sides.insert(out.sides.end(), list.begin(), list.end());
+  }
+  out.first.push_back(static_cast<std::uint32_t>(out.sides.size()));
+  return out;
+}
+
+}  // namespace
+
 /// Returns the differences that count as 0.
 /// @param flatness  of joined triangles that stay where they are; otherwise 0.
 TracePrecision precision_of(const Box3& box, double flatness, TracedPlaces places) {
@@ -42,6 +108,10 @@ class SiteFinder {
     std::vector<Box3> boxes;
     for (TracedSite& site : out_.sites_) {
       detail::sort_unique(site.vertices);
+      site.is_convex = site.kind == SiteKind::face && is_convex(site);
+      // A box tree takes longer than a short list.
+      constexpr std::size_t many = 24;
+      if (site.kind == SiteKind::face && site.sides.size() > many) site.index = index_of(site.sides);
       boxes.push_back(site.box);
     }
     out_.boxes_.emplace(boxes);
@@ -160,6 +230,17 @@ class SiteFinder {
       out_.edges_.push_back(border);
     }
     return true;
+  }
+
+  /// Returns true if a face is the set of points inside all its sides. Large faces do not count.
+  [[nodiscard]] bool is_convex(const TracedSite& face) const {
+    constexpr std::size_t most_sides = 12;
+    if (face.sides.size() > most_sides) return false;
+    return std::all_of(face.sides.begin(), face.sides.end(), [&](const DomainSide& side) {
+      return std::all_of(face.sides.begin(), face.sides.end(), [&](const DomainSide& other) {
+        return side.height(other.ends[0]) >= -1e-14 * out_.extent_;
+      });
+    });
   }
 
   static std::array<double, 2> plane_of(const TracedSite& face, const Vec3d& p) {
@@ -290,29 +371,30 @@ Vec3d TracedSites::gradient(Index i, const Vec3d& x) const {
   return unit(x - foot(i, x));
 }
 
-double TracedSites::outside_polygon(const TracedSite& face, const Vec3d& x) const {
+double TracedSites::outside_polygon(const TracedSite& face, const Vec3d& x, double most) const {
   const double px = dot(face.axes[0], x - face.point);
   const double py = dot(face.axes[1], x - face.point);
-  bool is_inside = false;
+  if (is_in_polygon(face, px, py)) return 0;
   double least = std::numeric_limits<double>::infinity();  // squared
-  for (const DomainSide& side : face.sides) {
-    const double ax = side.from[0] - px, ay = side.from[1] - py;
-    const double bx = side.to[0] - px, by = side.to[1] - py;
-    if ((ay > 0) != (by > 0) && (bx * ay - ax * by) / (ay - by) > 0) is_inside = !is_inside;
-    const double dx = bx - ax, dy = by - ay;
-    const double t = std::clamp(-(ax * dx + ay * dy) / (dx * dx + dy * dy), 0.0, 1.0);
-    const double qx = ax + t * dx, qy = ay + t * dy;
-    least = std::min(least, qx * qx + qy * qy);
+  if (face.index) {
+    // Distances from boxes are rounded.
+    constexpr double more = 1 + 1e-9;
+    face.index->boxes.for_each_near({px, py, 0}, more * most, [&](Index k) {
+      least = std::min(least, squared_distance(face.sides[k], px, py));
+      return more * std::min(most, std::sqrt(least));
+    });
+  } else {
+    for (const DomainSide& side : face.sides) least = std::min(least, squared_distance(side, px, py));
   }
-  return is_inside ? 0 : std::sqrt(least);
+  return std::sqrt(least);
 }
 
-double TracedSites::outside(Index i, const Vec3d& x) const {
+double TracedSites::outside(Index i, const Vec3d& x, double most) const {
   const TracedSite& site = sites_[i];
-  if (site.kind == SiteKind::face) return outside_polygon(site, x);
-  double most = 0;
-  for (const DomainSide& side : site.sides) most = std::max(most, -side.height(x));
-  return most;
+  if (site.kind == SiteKind::face) return outside_polygon(site, x, most);
+  double furthest = 0;
+  for (const DomainSide& side : site.sides) furthest = std::max(furthest, -side.height(x));
+  return furthest;
 }
 
 TracedSites::OutsideSide TracedSites::outside_side(Index i, const Vec3d& x) const {
@@ -341,12 +423,13 @@ TracedSites::OutsideSide TracedSites::outside_side(Index i, const Vec3d& x) cons
   return out;
 }
 
-double TracedSites::least_distance(Index i, const Vec3d& x) const {
+double TracedSites::least_distance(Index i, const Vec3d& x, double beyond) const {
   const TracedSite& site = sites_[i];
-  if (site.kind == SiteKind::face) return std::hypot(distance(i, x), outside_polygon(site, x));
+  const auto both = [](double a, double b) { return std::sqrt(a * a + b * b); };
+  if (site.kind == SiteKind::face) return both(distance(i, x), beyond);
   if (site.kind == SiteKind::edge) {
     const double t = dot(site.direction, x - site.point);
-    return std::hypot(distance(i, x), std::max({0.0, -t, t - site.length}));
+    return both(distance(i, x), std::max({0.0, -t, t - site.length}));
   }
   return distance(i, x);
 }
@@ -390,11 +473,12 @@ std::vector<const DomainSide*> TracedSites::sides_at(Index i, const Vec3d& x, do
   std::vector<const DomainSide*> out;
   if (site.kind == SiteKind::face) {
     const Vec3d q = foot(i, x);
-    for (const DomainSide& side : site.sides) {
+    for_each_side(i, x, tolerance, [&](const DomainSide& side) {
       const Vec3d along = side.ends[1] - side.ends[0];
       const double t = std::clamp(dot(q - side.ends[0], along) / squared_length(along), 0.0, 1.0);
       if (length(side.ends[0] + along * t - q) <= tolerance) out.push_back(&side);
-    }
+    });
+    std::sort(out.begin(), out.end());
     return out;
   }
   for (const DomainSide& side : site.sides) {
@@ -419,22 +503,32 @@ bool TracedSites::leads_inside(Index i, const std::vector<const DomainSide*>& si
   return is_inside(sides[0]) || is_inside(sides[1]);
 }
 
-TracedSites::Closest TracedSites::closest(const Vec3d& x, double tolerance) const {
+TracedSites::Closest TracedSites::closest_within(const Vec3d& x, double tolerance, double limit) const {
   Closest out;
   std::vector<std::pair<double, Index>> found;
-  boxes_->for_each_near(x, out.radius, [&](Index i) {
+  boxes_->for_each_near(x, limit, [&](Index i) {
     ++out.examined;
     const double d = distance(i, x);
-    if (d >= -tolerance && d <= out.radius + tolerance && outside(i, x) <= tolerance) {
+    if (d >= -tolerance && d <= out.radius + tolerance && outside(i, x, tolerance) <= tolerance) {
       found.emplace_back(d, i);
       out.radius = std::min(out.radius, d);
     }
-    return out.radius + 2 * tolerance;
+    return std::min(limit, out.radius + 2 * tolerance);
   });
   for (const auto& [d, i] : found) {
     if (d <= out.radius + tolerance) out.sites.push_back(i);
   }
   std::sort(out.sites.begin(), out.sites.end());
+  return out;
+}
+
+TracedSites::Closest TracedSites::closest(const Vec3d& x, double tolerance, double guess) const {
+  const double limit = guess + 4 * tolerance;
+  const Closest near = closest_within(x, tolerance, limit);
+  // All closest sites are within the limit if the radius is.
+  if (near.radius + 2 * tolerance <= limit || !std::isfinite(limit)) return near;
+  Closest out = closest_within(x, tolerance, std::numeric_limits<double>::infinity());
+  out.examined += near.examined;
   return out;
 }
 

@@ -28,6 +28,15 @@ struct DomainSide {
   [[nodiscard]] double height(const Vec3d& q) const { return dot(normal, q - ends[0]); }
 };
 
+/// Finds the sides of a face that are near a point of its plane, if it has many.
+struct SideIndex {
+  BoxBvh boxes;                      ///< around the sides, in the coordinates of the plane
+  double low = 0;                    ///< of all sides, along the second axis
+  double per_unit = 0;               ///< bands per mesh unit along the second axis
+  std::vector<std::uint32_t> first;  ///< of each band, in `sides`; one more than there are bands
+  std::vector<std::uint32_t> sides;  ///< that cross each band
+};
+
 /// Face, reflex edge or reflex vertex.
 struct TracedSite {
   SiteKind kind = SiteKind::face;
@@ -41,6 +50,8 @@ struct TracedSite {
   std::uint32_t border = 0;               ///< of an edge: its number in TracedSites::edges()
   std::uint32_t triangle_or_element = 0;  ///< a triangle of the face; the edge or vertex of the SiteTable
   Box3 box;
+  bool is_convex = false;          ///< of a face: the sides bound a convex polygon
+  std::optional<SideIndex> index;  ///< of a face with many sides
 };
 
 /// A convex edge, at which the sheet between its two faces ends. Or a reflex edge, at which two walls end.
@@ -106,8 +117,9 @@ class TracedSites {
   [[nodiscard]] Vec3d foot(Index i, const Vec3d& x) const;
   /// Returns the gradient of distance(), a unit vector.
   [[nodiscard]] Vec3d gradient(Index i, const Vec3d& x) const;
-  /// Returns how far x lies outside of the domain of a site at least; 0 inside.
-  [[nodiscard]] double outside(Index i, const Vec3d& x) const;
+  /// Returns how far x lies outside of the domain of a site at least; 0 inside. If this is more than `most`, the result
+  /// may be any value above `most`.
+  [[nodiscard]] double outside(Index i, const Vec3d& x, double most = std::numeric_limits<double>::infinity()) const;
   /// The side of a face beyond which a point lies.
   struct OutsideSide {
     const DomainSide* side = nullptr;
@@ -117,9 +129,26 @@ class TracedSites {
   /// @param x  its projection lies outside of the face.
   [[nodiscard]] OutsideSide outside_side(Index i, const Vec3d& x) const;
   /// Returns the distance of x from the site itself, or a lower bound on it.
-  [[nodiscard]] double least_distance(Index i, const Vec3d& x) const;
+  /// @param beyond  outside(i, x)
+  [[nodiscard]] double least_distance(Index i, const Vec3d& x, double beyond) const;
   /// Returns the sides of a site's domain that contain x, within a tolerance.
   [[nodiscard]] std::vector<const DomainSide*> sides_at(Index i, const Vec3d& x, double tolerance) const;
+  /// Calls visit(side) for all sides of a site's domain. Of a face with many sides, those at a larger distance than
+  /// `reach` from the foot of x may be left out, and the order is not that of the sides.
+  template <class Visit>
+  void for_each_side(Index i, const Vec3d& x, double reach, const Visit& visit) const {
+    const TracedSite& site = sites_[i];
+    if (!site.index) {
+      for (const DomainSide& side : site.sides) visit(side);
+      return;
+    }
+    const Vec3d step = x - site.point;
+    const double limit = (1 + 1e-9) * reach + 1e-13 * extent_;
+    site.index->boxes.for_each_near({dot(site.axes[0], step), dot(site.axes[1], step), 0}, limit, [&](Index k) {
+      visit(site.sides[k]);
+      return limit;
+    });
+  }
   /// Returns true if the direction h from x leads into the domain of a site, or along its border.
   [[nodiscard]] bool leads_inside(Index i, const std::vector<const DomainSide*>& sides, const Vec3d& h,
                                   double tolerance) const;
@@ -134,7 +163,9 @@ class TracedSites {
     std::vector<Index> sites;  ///< ascending: all within the tolerance of the radius
     std::size_t examined = 0;  ///< sites whose distance was computed
   };
-  [[nodiscard]] Closest closest(const Vec3d& x, double tolerance) const;
+  /// @param guess  of the radius. The search is fast if the radius is at most this value, and not much smaller.
+  [[nodiscard]] Closest closest(const Vec3d& x, double tolerance,
+                                double guess = std::numeric_limits<double>::infinity()) const;
   /// Calls visit(site) for each site whose box is within a distance of x.
   template <class Visit>
   void for_each_within(const Vec3d& x, double distance, const Visit& visit) const {
@@ -146,7 +177,8 @@ class TracedSites {
 
  private:
   friend class SiteFinder;
-  [[nodiscard]] double outside_polygon(const TracedSite& face, const Vec3d& x) const;
+  [[nodiscard]] Closest closest_within(const Vec3d& x, double tolerance, double limit) const;
+  [[nodiscard]] double outside_polygon(const TracedSite& face, const Vec3d& x, double most) const;
 
   std::vector<TracedSite> sites_;
   std::vector<BorderEdge> edges_;

@@ -49,7 +49,7 @@ TracedStructure traced(const TracedSites& sites, std::size_t per_loop, SeamGraph
 }  // namespace
 
 std::uint64_t usual_work(const TracedSites& sites) {
-  constexpr std::uint64_t per_site = 2'500'000;
+  constexpr std::uint64_t per_site = 400'000;
   return per_site * sites.size();
 }
 
