@@ -146,9 +146,7 @@ class SiteFinder {
       out_.moved_ = std::max(out_.moved_, length(before[v] - out_.vertices_[v]));
     }
     return std::all_of(mesh_.triangles.begin(), mesh_.triangles.end(), [&](const Triangle& t) {
-      const auto normal = [&](const std::vector<Vec3d>& at) {
-        return cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]);
-      };
+      const auto normal = [&](const std::vector<Vec3d>& at) { return cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]); };
       return dot(normal(before), normal(out_.vertices_)) > 0;
     });
   }
@@ -237,9 +235,8 @@ class SiteFinder {
     constexpr std::size_t most_sides = 12;
     if (face.sides.size() > most_sides) return false;
     return std::all_of(face.sides.begin(), face.sides.end(), [&](const DomainSide& side) {
-      return std::all_of(face.sides.begin(), face.sides.end(), [&](const DomainSide& other) {
-        return side.height(other.ends[0]) >= -1e-14 * out_.extent_;
-      });
+      return std::all_of(face.sides.begin(), face.sides.end(),
+                         [&](const DomainSide& other) { return side.height(other.ends[0]) >= -1e-14 * out_.extent_; });
     });
   }
 
@@ -524,7 +521,7 @@ TracedSites::Closest TracedSites::closest_within(const Vec3d& x, double toleranc
 
 TracedSites::Closest TracedSites::closest(const Vec3d& x, double tolerance, double guess) const {
   const double limit = guess + 4 * tolerance;
-  const Closest near = closest_within(x, tolerance, limit);
+  Closest near = closest_within(x, tolerance, limit);
   // All closest sites are within the limit if the radius is.
   if (near.radius + 2 * tolerance <= limit || !std::isfinite(limit)) return near;
   Closest out = closest_within(x, tolerance, std::numeric_limits<double>::infinity());

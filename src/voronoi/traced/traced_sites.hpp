@@ -133,8 +133,8 @@ class TracedSites {
   [[nodiscard]] double least_distance(Index i, const Vec3d& x, double beyond) const;
   /// Returns the sides of a site's domain that contain x, within a tolerance.
   [[nodiscard]] std::vector<const DomainSide*> sides_at(Index i, const Vec3d& x, double tolerance) const;
-  /// Calls visit(side) for all sides of a site's domain. Of a face with many sides, those at a larger distance than
-  /// `reach` from the foot of x may be left out, and the order is not that of the sides.
+  /// Calls visit(side) for all sides of a site's domain. A face with many sides may leave out those at a larger
+  /// distance than `reach` from the foot of x. Their order is then not that of the sides.
   template <class Visit>
   void for_each_side(Index i, const Vec3d& x, double reach, const Visit& visit) const {
     const TracedSite& site = sites_[i];

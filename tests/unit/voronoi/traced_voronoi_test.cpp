@@ -1,9 +1,11 @@
 // Traced diagrams: counts of sheets, seams and junctions that are known by hand, and the maps of walls.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <random>
 #include <stop_token>
 #include <tuple>
 #include <utility>
@@ -15,6 +17,8 @@
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
+#include "voronoi/label_geometry.hpp"
+#include "voronoi/traced/line_contact.hpp"
 #include "voronoi/traced/local_star.hpp"
 #include "voronoi/traced/sheet_triangles.hpp"
 #include "voronoi/traced/traced_sites.hpp"
@@ -135,6 +139,82 @@ TEST(TracedDiagram, StopsAtALimitOfItsWork) {
   const TracedResult enough = traced_structure(sites, TraceEffort::usual, 8 * whole[0].work, {});
   ASSERT_TRUE(enough.structure);
   EXPECT_EQ(enough.structure->curves.size(), whole[0].structure->curves.size());
+}
+
+/// Checks the way to the contact of a site with many points of the line.
+void expect_first_contact(const TracedSites& sites, const SeamLine& line, TracedSites::Index other, double most) {
+  const double way = way_to_contact(sites, line, other, most);
+  ASSERT_GE(way, 0);
+  const auto point = [&](double s) { return line.start + line.along * s; };
+  const auto is_as_close = [&](double s, double slack) {
+    const Vec3d x = point(s);
+    const double d = sites.distance(other, x);
+    return d >= -slack && d <= sites.distance(line.own, x) + slack && sites.outside(other, x) <= slack;
+  };
+  constexpr int count = 200;
+  for (int k = 0; k < count; ++k) EXPECT_FALSE(is_as_close(std::min(way, most) * k / count, 0)) << way;
+  if (way < most && (sites[other].kind != SiteKind::face || sites[other].is_convex)) {
+    EXPECT_TRUE(is_as_close(way, 8 * sites.tolerance()) || sites.distance(other, point(way)) < 0) << way;
+  }
+}
+
+TEST(WayToContact, IsThatOfManyPointsOfALine) {
+  const TracedSites sites = sites_of(make_bracket());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto vector = [&] {
+    const double x = number(random);
+    const double y = number(random);
+    const double z = number(random);
+    return Vec3d{x, y, z};
+  };
+  std::size_t contacts = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3d x = vector() * 1.4;
+    const TracedSites::Closest closest = sites.closest(x, sites.tolerance());
+    if (closest.sites.size() != 1) continue;  // outside of the solid, or not general
+    const SeamLine line{closest.sites[0], x, unit(vector())};
+    for (TracedSites::Index i = 0; i < sites.size(); ++i) {
+      if (i == line.own) continue;
+      expect_first_contact(sites, line, i, closest.radius);
+      if (way_to_contact(sites, line, i, closest.radius) < closest.radius) ++contacts;
+    }
+  }
+  EXPECT_GT(contacts, 100U);
+}
+
+/// The largest faces of a plate have 32 sides around each hole. Their sides are in an index.
+TEST(TracedSites, FindSidesOfLargeFacesLikeASearchOfAllSides) {
+  const TracedSites sites = sites_of(make_plate());
+  TracedSites::Index face = 0;
+  while (!sites[face].index) ++face;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> number(-1.6, 1.6);
+  std::size_t inside = 0, outside = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double a = number(random);
+    const double b = number(random);
+    const Vec3d x{a, b, 0};
+    const Vec3d q = sites.foot(face, x);
+    double least = sites.extent();
+    double turns = 0;
+    for (const DomainSide& side : sites[face].sides) {
+      const Vec3d way = side.ends[1] - side.ends[0];
+      const double t = std::clamp(dot(q - side.ends[0], way) / squared_length(way), 0.0, 1.0);
+      least = std::min(least, length(side.ends[0] + way * t - q));
+      const Vec3d from = side.ends[0] - q, to = side.ends[1] - q;
+      turns += std::atan2(dot(sites[face].direction, cross(from, to)), dot(from, to));
+    }
+    const bool is_inside = std::abs(turns) > 3;
+    EXPECT_NEAR(sites.outside(face, x), is_inside ? 0 : least, 1e-12);
+    if (!is_inside && least > 0.05) {
+      EXPECT_GT(sites.outside(face, x, 0.05), 0.05);
+    }
+    EXPECT_EQ(sites.sides_at(face, x, 0.1).empty(), least > 0.1);
+    ++(is_inside ? inside : outside);
+  }
+  EXPECT_GT(inside, 500U);
+  EXPECT_GT(outside, 100U);
 }
 
 /// Around the middle line of a square bar, four regions meet along one seam.
