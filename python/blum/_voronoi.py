@@ -219,7 +219,7 @@ class VoronoiComplex(Complex):
         Examples
         --------
         >>> import blum
-        >>> found = blum.voronoi_complex(blum.generate("gear"), depth=3)
+        >>> found = blum.voronoi_complex(blum.generate("gear"), method="cubes", depth=3)
         >>> found.report.certified, len(found.with_failing_cells().edges) == 12 * len(found.report.failing)
         (False, True)
         """

@@ -250,12 +250,15 @@ std::vector<WallTriangle> wall_triangles(const TracedSites& sites, const Complex
 constexpr const char* wrong_betti = "the traced diagram does not have the expected Betti numbers";
 
 /// Traces the diagram with one effort.
+/// @param most_work  limit on the work of tracing, which is reduced by the work that was done.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
-                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+                  std::uint64_t& most_work, const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out,
+                  const Context& context) {
   const MeshView mesh = solid.surface().mesh;
-  const TracedResult traced = traced_structure(sites, effort, usual_work(sites), context);
+  const TracedResult traced = traced_structure(sites, effort, std::min(most_work, usual_work(sites)), context);
   timer.lap("traces");
+  most_work -= std::min(most_work, traced.work);
   if (!traced.structure) {
     const Vec3d place = traced.place + sites.origin();
     return traced.problem + " near " + exact_text(place.x) + ", " + exact_text(place.y) + ", " + exact_text(place.z);
@@ -285,13 +288,18 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
     report.found = homology(out.complex.view(), context);
     timer.lap("homology");
   }
-  report.traced = true;
   // Points between the corners are up to twice the chord from the wall, so a bound below that would need no end of
   // parts.
   constexpr double in_chords = 4;
+  const double enough = in_chords * chord;
   const std::vector<WallTriangle> walls = wall_triangles(sites, out.complex);
-  report.label_error = label_error(sites, mesh, table, walls, in_chords * chord, context);
+  report.label_error = label_error(sites, mesh, table, walls, enough, context);
   timer.lap("errors");
+  constexpr double surely_wrong = 1.25;
+  if (report.label_error > surely_wrong * enough) {
+    return "a wall is " + exact_text(report.label_error) + " farther from its sites than from the border";
+  }
+  report.traced = true;
   report.joined = sites.tolerance();
   report.faces = sites.face_count();
   report.chord = chord;
@@ -303,17 +311,19 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
 /// @param flatness  triangles whose corners lie within twice this distance of one plane are one face, mesh units.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, double flatness,
-                  TracedPlaces places, const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out,
-                  const Context& context) {
+                  TracedPlaces places, std::uint64_t& most_work, const VoronoiOptions& options, PhaseTimer& timer,
+                  VoronoiComplex& out, const Context& context) {
   const std::optional<TracedSites> sites = TracedSites::of(solid.surface().mesh, table, exact, flatness, places);
   timer.lap("sites");
   if (!sites) return "joined triangles are not flat";
   out.report.flatness = flatness;
   out.report.reflex_edges = sites->count(SiteKind::edge);
   out.report.reflex_vertices = sites->count(SiteKind::vertex);
-  std::string problem = trace(solid, table, *sites, TraceEffort::usual, options, timer, out, context);
+  std::string problem = trace(solid, table, *sites, TraceEffort::usual, most_work, options, timer, out, context);
   // More walks across sheets may find what is missing. They do not help against other problems.
-  if (problem == wrong_betti) problem = trace(solid, table, *sites, TraceEffort::full, options, timer, out, context);
+  if (problem == wrong_betti) {
+    problem = trace(solid, table, *sites, TraceEffort::full, most_work, options, timer, out, context);
+  }
   return problem;
 }
 
@@ -325,13 +335,24 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
   std::vector<std::pair<double, TracedPlaces>> ways{{flatness, TracedPlaces::merged},
                                                     {flatness, TracedPlaces::separate}};
   if (flatness > 0) ways.emplace_back(0.0, TracedPlaces::separate);
+  // By default, a diagram that cannot be traced must not take much longer than its cubes.
+  constexpr std::uint64_t usual = 300'000'000;
+  std::uint64_t most_work =
+      options.method == VoronoiMethod::automatic ? usual : std::numeric_limits<std::uint64_t>::max();
   std::string first;
   for (const auto& [own, places] : ways) {
-    const std::string problem = trace(solid, table, exact, own, places, options, timer, out, context);
+    const std::string problem = trace(solid, table, exact, own, places, most_work, options, timer, out, context);
     if (out.report.traced) return;
     if (first.empty()) first = problem;
   }
   out.report.trace_problem = first;
+}
+
+/// Returns true if tracing is tried for solids that are not convex. By default, medial axes come from cubes: their
+/// sheets pass smoothly from one pair of sites to another, so fewer triangles represent them.
+bool is_traced(const VoronoiOptions& options) {
+  if (options.method != VoronoiMethod::automatic) return options.method == VoronoiMethod::traced;
+  return options.part != VoronoiPart::medial_axis && !options.tolerance;
 }
 
 /// @param phases  phases that were already completed.
@@ -353,7 +374,7 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
       return out;
     }
   }
-  if (options.method != VoronoiMethod::cubes) {
+  if (is_traced(options)) {
     trace(solid, table, sites, options, timer, out, context);
     if (report.traced) return out;
   }

@@ -94,7 +94,9 @@ void expect_never_wrong(const test::NamedMesh& solid, std::size_t& certified, st
     SCOPED_TRACE(solid.name + ", " + std::string(to_string(part)));
     VoronoiReport report;
     try {
-      report = voronoi_complex(solid.mesh, {.part = part, .resolution = 1, .max_cubes = 10'000}).report;
+      report = voronoi_complex(solid.mesh,
+                               {.part = part, .method = VoronoiMethod::cubes, .resolution = 1, .max_cubes = 10'000})
+                   .report;
     } catch (const InvalidMesh&) {
       return;
     }
@@ -151,6 +153,17 @@ TEST(VoronoiAxis, IsNearThatOfTheGrid) {
   EXPECT_LE(std::max(usual, usual_back), 0.05 * side);
 }
 
+/// Real parts in single precision, with cylinders of many facets and faces bent by rounding, keep their sheets.
+TEST(VoronoiSolids, OfRealPartsAreTraced) {
+  for (const char* name : {"7_8ths_cube.stl", "abc9.stl", "eight.off", "plate_holes.STL", "round.stl"}) {
+    const auto path = test::data_file(std::string("meshes/") + name);
+    if (!path) GTEST_SKIP() << test::no_data(name);
+    const VoronoiReport report = voronoi_complex(weld(read_mesh(*path)), {.part = VoronoiPart::walls}).report;
+    EXPECT_TRUE(report.traced) << name << ": " << report.trace_problem;
+    EXPECT_TRUE(report.certified) << name;
+  }
+}
+
 /// Scanned parts have 32-bit coordinates, and vertices with cones of any width.
 TEST(VoronoiSolids, OfScans) {
   struct Part {
@@ -161,7 +174,9 @@ TEST(VoronoiSolids, OfScans) {
     const auto path = test::data_file(file);
     if (!path) GTEST_SKIP() << test::no_data(file);
     const VoronoiReport report =
-        voronoi_complex(weld(read_mesh(*path)), {.part = VoronoiPart::medial_axis, .resolution = 1}).report;
+        voronoi_complex(weld(read_mesh(*path)),
+                        {.part = VoronoiPart::medial_axis, .method = VoronoiMethod::cubes, .resolution = 1})
+            .report;
     EXPECT_TRUE(report.certified) << file;
     EXPECT_EQ(report.found, solid) << file;
   }

@@ -39,9 +39,11 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,  ///< If all bodies are convex: planes. Otherwise: cubes.
+  automatic,  ///< If all bodies are convex: planes. Otherwise: seams are traced. Cubes if this fails or takes long, for
+              ///< medial axes, and if a tolerance is given: only cubes bound the distance from the exact diagram.
   cubes,      ///< Cubes of an octree, each with a proof of its topology.
-  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced. If this fails: cubes.
+  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced, which may take minutes. If it fails:
+              ///< cubes.
 };
 
 template <>
@@ -56,11 +58,11 @@ struct VoronoiOptions {
   /// Part of the diagram that the complex represents.
   VoronoiPart part = VoronoiPart::all;
   VoronoiMethod method = VoronoiMethod::automatic;
-  /// Convex bodies: triangles count as one face if their corners lie within this distance of one plane, >= 0, mesh
-  /// units. Junctions and seams within 8 times this distance are joined. 0 uses the mesh as given. If not given, it is
-  /// 16 times the rounding error of the largest coordinate. The error is that of the precision whose digits the longest
-  /// coordinate fills. With up to 20 binary digits it is 0, with 21 to 24 that of single precision. Other bodies:
-  /// ignored.
+  /// Planes and traces: triangles count as one face if their corners lie within this distance of one plane, >= 0, mesh
+  /// units. For traces, it is twice this distance. Junctions and seams of planes within 8 times this distance are
+  /// joined. 0 uses the mesh as given. If not given, it is 16 times the rounding error of the largest coordinate. The
+  /// error is that of the precision whose digits the longest coordinate fills. With up to 20 binary digits it is 0,
+  /// with 21 to 24 that of single precision. Cubes: ignored.
   std::optional<double> flatness = {};
   /// The options below are for cubes. Limit for the side of cubes that meet the solid. The limit is the longest side of
   /// the solid's box, divided by this number, 1 to 1024.
@@ -85,11 +87,12 @@ struct Description<VoronoiOptions> {
   static constexpr std::tuple members{
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
-      Member{"method", &VoronoiOptions::method, "",
-             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always; traced: seams are followed "
-             "instead, if this succeeds"},
+      Member{
+          "method", &VoronoiOptions::method, "",
+          "auto: exact planes if all bodies are convex, otherwise traced seams, for medial axes cubes; cubes: always; "
+          "traced: seams also for medial axes"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
-             "convex bodies: triangles within this distance of one plane are one face; default: the rounding of "
+             "planes and traces: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
              Range::at_least(0)},
       Member{"resolution", &VoronoiOptions::resolution, "",

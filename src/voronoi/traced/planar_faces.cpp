@@ -116,9 +116,9 @@ class Flattener {
   struct Face {
     Vec3d normal;
     Vec3d middle;
-    double height = 0;             ///< of the plane above the middle
-    std::array<Vec3d, 2> axes;     ///< across the normal, as long as the inverse of the face's radius
-    std::uint32_t first = 0;       ///< equations
+    double height = 0;          ///< of the plane above the middle
+    std::array<Vec3d, 2> axes;  ///< across the normal, as long as the inverse of the face's radius
+    std::uint32_t first = 0;    ///< equations
     std::uint32_t count = 0;
   };
 
@@ -238,7 +238,8 @@ JoinedTriangles join_flat_triangles(const MeshView& mesh, std::span<const Vec3d>
     if (sites.turn[e] == EdgeTurn::flat) joiner.join(sites.triangles_of[e][0], sites.triangles_of[e][1], true);
   }
   if (flatness > 0) {
-    for (std::uint32_t e = 0; e < edge_count; ++e) joiner.join(sites.triangles_of[e][0], sites.triangles_of[e][1], false);
+    for (std::uint32_t e = 0; e < edge_count; ++e)
+      joiner.join(sites.triangles_of[e][0], sites.triangles_of[e][1], false);
   }
   JoinedTriangles out;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) out.face_of.push_back(joiner.set_of(t));

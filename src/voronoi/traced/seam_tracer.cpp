@@ -486,13 +486,31 @@ struct SeamTracer::Run {
     if (there < touching * tolerance()) tracer.end_at_border(out);
   }
 
+  void end_at_vertex(std::uint32_t v) {
+    out.points.push_back(tracer.sites_.vertices()[v]);
+    out.end = TraceEnd::vertex;
+    out.vertex = v;
+  }
+
+  /// Returns true if the trace ends at a vertex just beyond an event. Sites that meet at the vertex are equally close
+  /// only there, but differ by less than the tolerance near it if they are nearly flat.
+  bool ends_at_vertex(const Vec3d& event, const TracedSites::Closest& there) {
+    const auto v = tracer.vertex_ahead(curve, event, along, there.radius, {});
+    if (!v || !std::all_of(there.sites.begin(), there.sites.end(), [&](Index i) {
+          const std::vector<std::uint32_t>& own = tracer.sites_[i].vertices;
+          return std::binary_search(own.begin(), own.end(), *v);
+        })) {
+      return false;
+    }
+    end_at_vertex(*v);
+    return true;
+  }
+
   /// Returns true if the trace ends at the surface.
   bool ends_at_surface(bool is_first, const std::vector<Room>& near) {
     if (!is_first || radius > tolerance()) {
       if (const auto v = tracer.vertex_ahead(curve, x, along, radius, near)) {
-        out.points.push_back(tracer.sites_.vertices()[*v]);
-        out.end = TraceEnd::vertex;
-        out.vertex = *v;
+        end_at_vertex(*v);
         return true;
       }
     }
@@ -501,8 +519,8 @@ struct SeamTracer::Run {
     return true;
   }
 
-  /// Moves the last point to where a curve touches the region of a site, or where all near sites meet, if these places
-  /// are known more precisely and are events of this curve.
+  /// Moves the last point to where the curve touches the region of a site, or where all near sites meet. It moves only
+  /// if this place is an event of the curve and is known more precisely.
   /// @param found  the closest sites of the last point.
   /// @return the closest sites of the point.
   std::vector<Index> refined(Index site, const std::vector<Index>& found) {
@@ -535,6 +553,7 @@ struct SeamTracer::Run {
         return room.step >= size || contains(there.sites, room.site);
       });
       if (!is_first && !tracer.is_clear(curve, x, *found)) continue;
+      if (ends_at_vertex(*found, there)) return true;
       out.points.push_back(*found);
       end_at(refined(near[r].site, there.sites), there.radius);
       return true;

@@ -5,7 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numbers>
 #include <random>
+#include <set>
 #include <stop_token>
 #include <tuple>
 #include <utility>
@@ -17,9 +21,12 @@
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
+#include "support/mesh_places.hpp"
 #include "voronoi/label_geometry.hpp"
+#include "voronoi/planes/convex_faces.hpp"
 #include "voronoi/traced/line_contact.hpp"
 #include "voronoi/traced/local_star.hpp"
+#include "voronoi/traced/planar_faces.hpp"
 #include "voronoi/traced/sheet_triangles.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 #include "voronoi/traced/traced_structure.hpp"
@@ -56,6 +63,27 @@ TracedSites sites_of(const TriangleMesh& mesh) {
   return *TracedSites::of(mesh, table, polyhedron_sites(mesh, table), 0, TracedPlaces::merged);
 }
 
+/// Returns the largest distance of a corner from the plane of its face's largest triangle.
+double largest_height(const TriangleMesh& mesh, const JoinedTriangles& joined, const std::vector<Vec3d>& at) {
+  const auto normal_of = [&](std::size_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return cross(at[b] - at[a], at[c] - at[a]);
+  };
+  std::map<std::uint32_t, std::size_t> largest;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::size_t& of_face = largest.try_emplace(joined.face_of[t], t).first->second;
+    if (squared_length(normal_of(t)) > squared_length(normal_of(of_face))) of_face = t;
+  }
+  double worst = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::size_t of_face = largest[joined.face_of[t]];
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      worst = std::max(worst, std::abs(dot(unit(normal_of(of_face)), at[v] - at[mesh.triangles[of_face][0]])));
+    }
+  }
+  return worst;
+}
+
 /// Let a profile have n sides, r reflex corners, A arcs and N nodes. A long prism over it has 2 (n + r) + A sheets,
 /// 2 A + N seams and 2 N + 2 n junctions. The L has 6, 1, 11 and 5.
 TEST(TracedDiagram, OfALongPrismHasTheCountsOfItsProfile) {
@@ -70,6 +98,48 @@ TEST(TracedDiagram, OfAFrameHasTheCountsOfItsProfile) {
 /// In a thin plate, the sheet between both sides ends in one seam after the other.
 TEST(TracedDiagram, OfAThinPrismHasASheetBetweenBothSides) {
   EXPECT_EQ(counts_of(prism(ell, 0.5)), (Counts{22, 21, 19}));
+}
+
+/// A side of the bar is bent inwards by a small angle. The region of its reflex edge is a thin wedge, within which more
+/// sites than two are nearly equally close. The bar's profile has 5 sides, 1 reflex corner, 9 arcs and 4 nodes.
+TEST(TracedDiagram, OfANearlyStraightBarHasTheCountsOfItsProfile) {
+  for (const double bend : {0.1, 1e-2, 1e-3, 1e-4, 1e-5}) {
+    SCOPED_TRACE(bend);
+    EXPECT_EQ(counts_of(prism({{0, 0}, {5, bend}, {8, 0}, {8, 2}, {0, 2}}, 20)), (Counts{21, 22, 18}));
+  }
+}
+
+/// The roof of a tent is bent by a small angle along its ridge, so four planes nearly meet in lines from its vertices.
+TEST(TracedDiagram, OfNearlyFlatVerticesIsTraced) {
+  for (const double height : {1e-2, 1e-4, 1e-6}) {
+    SCOPED_TRACE(height);
+    TriangleMesh mesh = prism(ell, 20);
+    for (Vec3d& p : mesh.vertices) {
+      if (p.x == 1 && p.y == 1) p.y += height;
+    }
+    const VoronoiComplex walls = walls_of(mesh);
+    EXPECT_TRUE(walls.report.traced) << walls.report.trace_problem;
+  }
+}
+
+/// Rounding to 32 bits bends the bases of a turned prism. They become flat, and vertices move by about the rounding.
+TEST(TracedDiagram, JoinsAndFlattensFacesOfRoundedCoordinates) {
+  std::vector<Point2> outline;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = k * std::numbers::pi / 6;
+    outline.push_back({(k % 2 == 0 ? 2 : 1) * std::cos(angle), (k % 2 == 0 ? 2 : 1) * std::sin(angle)});
+  }
+  const TriangleMesh mesh = test::in_single_precision(test::turned(prism(outline, 1)));
+  const SiteTable table(mesh);
+  const double flatness = rounding_of_coordinates(mesh);
+  const JoinedTriangles joined =
+      join_flat_triangles(mesh, mesh.vertices, table, polyhedron_sites(mesh, table), flatness);
+  EXPECT_EQ(std::set<std::uint32_t>(joined.face_of.begin(), joined.face_of.end()).size(), 14U);
+  std::vector<Vec3d> vertices = mesh.vertices;
+  EXPECT_GT(largest_height(mesh, joined, vertices), 1e-9) << "rounding bends faces";
+  EXPECT_LT(flatten_faces(mesh, joined, vertices), 1e-15);
+  EXPECT_LT(largest_height(mesh, joined, vertices), 1e-13);
+  for (std::size_t v = 0; v < vertices.size(); ++v) EXPECT_LT(length(vertices[v] - mesh.vertices[v]), 2 * flatness);
 }
 
 TEST(TracedDiagram, DoesNotDependOnThePlaceOfTheSolid) {

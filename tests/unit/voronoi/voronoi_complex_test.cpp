@@ -99,28 +99,30 @@ void expect_certified(const VoronoiReport& report) {
 }
 
 TEST_P(Shapes, AreCertified) {
-  const VoronoiReport report = voronoi_complex(GetParam().mesh, {.resolution = 1}).report;
-  expect_certified(report);
-  // If the solid is convex, the method of cubes must pass, too.
-  if (report.exact) {
-    expect_certified(voronoi_complex(GetParam().mesh, {.method = VoronoiMethod::cubes, .resolution = 1}).report);
+  for (const VoronoiMethod method : {VoronoiMethod::automatic, VoronoiMethod::cubes}) {
+    expect_certified(voronoi_complex(GetParam().mesh, {.method = method, .resolution = 1}).report);
   }
 }
 
 /// Without the surface, faces have no regions, and their holes have no tunnels.
 TEST_P(Shapes, HaveWalls) {
-  const VoronoiReport report = voronoi_complex(GetParam().mesh, {.part = VoronoiPart::walls, .resolution = 1}).report;
-  expect_certified(report);
   const BettiNumbers solid = *topology(GetParam().mesh).betti;
-  const std::size_t regions = report.reflex_edges + report.reflex_vertices - report.thin_vertices;
-  EXPECT_EQ(report.found, (BettiNumbers{solid[0], solid[1], solid[2] + static_cast<std::int64_t>(regions)}));
+  for (const VoronoiMethod method : {VoronoiMethod::automatic, VoronoiMethod::cubes}) {
+    const VoronoiReport report =
+        voronoi_complex(GetParam().mesh, {.part = VoronoiPart::walls, .method = method, .resolution = 1}).report;
+    expect_certified(report);
+    const std::size_t regions = report.reflex_edges + report.reflex_vertices - report.thin_vertices;
+    EXPECT_EQ(report.found, (BettiNumbers{solid[0], solid[1], solid[2] + static_cast<std::int64_t>(regions)}));
+  }
 }
 
 TEST_P(Shapes, HaveMedialAxesWithTheirTopology) {
-  const VoronoiReport report =
-      voronoi_complex(GetParam().mesh, {.part = VoronoiPart::medial_axis, .resolution = 1}).report;
-  expect_certified(report);
-  EXPECT_EQ(report.found, *topology(GetParam().mesh).betti);
+  for (const VoronoiMethod method : {VoronoiMethod::automatic, VoronoiMethod::cubes}) {
+    const VoronoiReport report =
+        voronoi_complex(GetParam().mesh, {.part = VoronoiPart::medial_axis, .method = method, .resolution = 1}).report;
+    expect_certified(report);
+    EXPECT_EQ(report.found, *topology(GetParam().mesh).betti);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
@@ -137,7 +139,7 @@ TEST(VoronoiComplex, OfFacesBentByAnyAmount) {
       for (Vec3d& p : mesh.vertices) p += (random.in_cube() - Vec3d{0.5, 0.5, 0.5}) * by;
       for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
         SCOPED_TRACE(std::to_string(by) + ", " + std::to_string(seed) + ", " + std::string(to_string(part)));
-        expect_certified(voronoi_complex(mesh, {.part = part, .resolution = 1}).report);
+        expect_certified(voronoi_complex(mesh, {.part = part, .method = VoronoiMethod::cubes, .resolution = 1}).report);
       }
     }
   }
@@ -187,7 +189,8 @@ TEST(VoronoiComplex, OfShallowDents) {
       const TriangleMesh mesh = dented_box(4, slope, is_rough, 2);
       for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
         SCOPED_TRACE(std::to_string(slope) + ", " + std::to_string(is_rough) + ", " + std::string(to_string(part)));
-        const VoronoiReport report = voronoi_complex(mesh, {.part = part, .resolution = 8}).report;
+        const VoronoiReport report =
+            voronoi_complex(mesh, {.part = part, .method = VoronoiMethod::cubes, .resolution = 8}).report;
         expect_certified(report);
         EXPECT_GT(report.reflex_vertices, 2U);
         EXPECT_EQ(report.thin_vertices == report.reflex_vertices, slope < 5e-4);
@@ -201,7 +204,8 @@ TEST(VoronoiComplex, OfShallowDents) {
 TEST(VoronoiComplex, OfShallowDentsOnAFineGrid) {
   TriangleMesh mesh = dented_box(4, 3e-4, true, 8);
   for (Vec3d& p : mesh.vertices) p.z = p.z > 0.9 ? p.z - 0.5 : p.z * 0.5;
-  const VoronoiOptions options{.part = VoronoiPart::medial_axis, .resolution = 48, .grids = 1};
+  const VoronoiOptions options{
+      .part = VoronoiPart::medial_axis, .method = VoronoiMethod::cubes, .resolution = 48, .grids = 1};
   const VoronoiReport report = voronoi_complex(test::turned(mesh), options).report;
   expect_certified(report);
   EXPECT_EQ(report.thin_vertices, 7U);
@@ -252,7 +256,10 @@ TEST(VoronoiComplex, RetestsCubesWhoseSquaresAreSplit) {
                           {},
                           {}};
   for (const int resolution : {1, 8}) {
-    expect_certified(voronoi_complex(mesh, {.part = VoronoiPart::medial_axis, .resolution = resolution}).report);
+    expect_certified(
+        voronoi_complex(mesh,
+                        {.part = VoronoiPart::medial_axis, .method = VoronoiMethod::cubes, .resolution = resolution})
+            .report);
   }
 }
 
@@ -465,7 +472,8 @@ TEST(VoronoiComplex, IsTheSameForAnyNumberOfThreads) {
 
 /// With few splits, some cubes do not pass. The report lists them.
 TEST(VoronoiComplex, ReportsFailingCells) {
-  const VoronoiReport report = voronoi_complex(make_gear(), {.resolution = 1, .depth = 3}).report;
+  const VoronoiReport report =
+      voronoi_complex(make_gear(), {.method = VoronoiMethod::cubes, .resolution = 1, .depth = 3}).report;
   EXPECT_FALSE(report.certified);
   ASSERT_FALSE(report.failing.empty());
   for (const FailingVoronoiCell& cell : report.failing) {
@@ -476,8 +484,8 @@ TEST(VoronoiComplex, ReportsFailingCells) {
 
 /// A finer grid has the same homology.
 TEST(VoronoiComplex, OfAFinerGrid) {
-  const VoronoiComplex coarse = voronoi_complex(make_star(), {.resolution = 1});
-  const VoronoiComplex fine = voronoi_complex(make_star(), {.resolution = 16});
+  const VoronoiComplex coarse = voronoi_complex(make_star(), {.method = VoronoiMethod::cubes, .resolution = 1});
+  const VoronoiComplex fine = voronoi_complex(make_star(), {.method = VoronoiMethod::cubes, .resolution = 16});
   EXPECT_TRUE(fine.report.certified);
   EXPECT_EQ(coarse.report.found, fine.report.found);
   EXPECT_GT(fine.report.cubes, 10 * coarse.report.cubes);
