@@ -90,24 +90,36 @@ std::optional<Vec3d> SeamTracer::solve(const std::array<TracedSurface, 3>& surfa
   for (int k = 0; k < most_iterations; ++k) {
     std::array<Vec3d, 3> row;
     std::array<double, 3> f{};
+    std::array<double, 3> slopes{};
+    double away = 0;
     for (std::size_t s = 0; s < 3; ++s) {
       row[s] = slope(surfaces[s], x);
       f[s] = value(surfaces[s], x);
+      away = std::max(away, std::abs(f[s]));
       // Rows of unit length make the determinant a measure of the angles between the surfaces.
       const double size = length(row[s]);
       if (!(size > 1e-13)) return std::nullopt;
+      slopes[s] = size;
       row[s] = row[s] / size;
       f[s] /= size;
     }
     const double det = dot(row[0], cross(row[1], row[2]));
     if (!(std::abs(det) > 1e-12)) return std::nullopt;
-    const Vec3d step =
-        (cross(row[1], row[2]) * f[0] + cross(row[2], row[0]) * f[1] + cross(row[0], row[1]) * f[2]) / det;
+    Vec3d step;
+    double per_value = 0;  // of the step
+    for (std::size_t s = 0; s < 3; ++s) {
+      const Vec3d way = cross(row[(s + 1) % 3], row[(s + 2) % 3]) / det;
+      step += way * f[s];
+      per_value += length(way) / slopes[s];
+    }
     x = x - step;
     const double size = length(step);
     if (!(size < 2 * reach) || !(length(x - start) <= 2 * reach)) return std::nullopt;
     if (size <= 1e-15 * sites_.extent()) return x;
     if (size >= 0.5 * last && size <= 1e-3 * sites_.tolerance()) return x;
+    // Where surfaces have small slopes, or touch, rounding of distances moves x further. More steps do not help then.
+    const double rounding = 0x1p-52 * sites_.extent();
+    if (size >= 0.5 * last && away <= 4 * rounding && size <= rounding * per_value) return x;
     last = size;
   }
   return last <= 0.1 * sites_.tolerance() ? std::optional(x) : std::nullopt;
@@ -220,6 +232,13 @@ std::vector<SeamTracer::Room> SeamTracer::rooms(const TracedCurve& curve, const 
   return out;
 }
 
+double SeamTracer::gap_to(Index site, const Vec3d& x, double beyond, double radius) const {
+  // A face behind which x lies, as the other face of a thin slot, is close from its other side only.
+  const double behind = sites_[site].kind == SiteKind::face ? -sites_.distance(site, x) : 0;
+  if (behind > sites_.tolerance()) return radius + behind;
+  return sites_.least_distance(site, x, beyond) - radius;
+}
+
 std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                         double radius, double most) const {
   std::vector<Room> out;
@@ -234,8 +253,7 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve
     if (contact >= most) return;
     const double beyond = sites_.outside(i, x, most);
     if (beyond >= most) return;
-    const double gap = sites_.least_distance(i, x, beyond) - radius;
-    const double step = std::max({contact, gap / 2, beyond});
+    const double step = std::max({contact, gap_to(i, x, beyond, radius) / 2, beyond});
     if (step < most) out.push_back({step, i});
   });
   return out;
@@ -257,7 +275,7 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve
     if (std::abs(sites_.distance(i, x)) - radius >= 2 * most) return;
     const double beyond = sites_.outside(i, x, most);
     if (beyond >= most) return;
-    double step = std::max((sites_.least_distance(i, x, beyond) - radius) / 2, beyond);
+    double step = std::max(gap_to(i, x, beyond, radius) / 2, beyond);
     if (beyond > 0 && (site.kind != SiteKind::face || site.is_convex)) {
       for (const DomainSide& side : site.sides) {
         const double height = -side.height(x);
@@ -339,7 +357,8 @@ std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, 
   return std::nullopt;
 }
 
-bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to) const {
+bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to,
+                          const std::vector<Index>& at_end) const {
   const Vec3d way = to - from;
   const double size = length(way);
   if (!(size > 0)) return true;
@@ -349,7 +368,12 @@ bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec
     const double share = k < parts ? static_cast<double>(k) / parts : 0.999;
     const auto at = point_in_plane(curve, from + way * share, way / size);
     if (!at || length(*at - from) > 1.5 * size) return false;
-    if (closest(*at, sites_.tolerance(), curve.sites[0]).sites != curve.sites) return false;
+    const std::vector<Index> there = closest(*at, sites_.tolerance(), curve.sites[0]).sites;
+    if (there == curve.sites) continue;
+    if (k < parts || !std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end()) ||
+        !std::includes(at_end.begin(), at_end.end(), there.begin(), there.end())) {
+      return false;
+    }
   }
   return true;
 }
@@ -552,7 +576,7 @@ struct SeamTracer::Run {
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
       });
-      if (!is_first && !tracer.is_clear(curve, x, *found)) continue;
+      if (!is_first && !tracer.is_clear(curve, x, *found, there.sites)) continue;
       if (ends_at_vertex(*found, there)) return true;
       out.points.push_back(*found);
       end_at(refined(near[r].site, there.sites), there.radius);
@@ -576,6 +600,10 @@ struct SeamTracer::Run {
         return std::nullopt;
       }
       step = 0.1 * tracer.sites_.blur(radius);
+      // Only the sites of the start are still as close. Others limit the step as always.
+      const auto other =
+          std::find_if(near.begin(), near.end(), [&](const Room& room) { return !contains(left, room.site); });
+      if (other != near.end()) step = std::min(step, other->step);
     }
     return std::max(step, 4 * tolerance());
   }
@@ -599,15 +627,23 @@ struct SeamTracer::Run {
     const double leap = std::min(0.1 * radius, 32 * step);
     if (!(step < 0.5 * leap && way > 64 * tolerance())) return false;
     const auto next = tracer.point_in_plane(curve, x + along * leap, along);
-    if (!next || length(*next - x) >= 1.5 * leap || !tracer.is_clear(curve, x, *next)) return false;
+    if (!next || length(*next - x) >= 1.5 * leap || !tracer.is_clear(curve, x, *next, curve.sites)) return false;
     return tracer.closest(*next, tolerance(), curve.sites[0]).sites == curve.sites && go_to(next, leap);
   }
 
-  /// Takes a step, or a shorter one if the curve bends.
+  /// Returns true if a step to a point of the curve passes an event: other sites are closer there.
+  [[nodiscard]] bool passes_event(const Vec3d& next) const {
+    const std::vector<Index> there = tracer.closest(next, tolerance(), curve.sites[0]).sites;
+    return !std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end());
+  }
+
+  /// Takes a step, or a shorter one if the curve bends, or bends so much that the step would pass an event.
   bool advances(double& step) {
     constexpr int most_halvings = 30;
     for (int h = 0; h < most_halvings; ++h, step *= 0.5) {
-      if (go_to(tracer.point_in_plane(curve, x + along * step, along), step)) return true;
+      const auto next = tracer.point_in_plane(curve, x + along * step, along);
+      if (next && step > 8 * tolerance() && passes_event(*next)) continue;
+      if (go_to(next, step)) return true;
     }
     return false;
   }

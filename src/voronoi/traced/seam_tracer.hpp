@@ -95,6 +95,9 @@ class SeamTracer {
   [[nodiscard]] bool flat_meeting(const std::vector<TracedSites::Index>& near, const Vec3d& at) const;
   [[nodiscard]] std::vector<Room> rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along, double radius,
                                         double most) const;
+  /// Returns a lower bound on how much further a site is than the radius.
+  /// @param beyond  sites_.outside(site, x)
+  [[nodiscard]] double gap_to(TracedSites::Index site, const Vec3d& x, double beyond, double radius) const;
   [[nodiscard]] std::vector<Room> rooms_of_line(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                 double radius, double most) const;
   [[nodiscard]] std::vector<Room> rooms_of_bend(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
@@ -111,7 +114,9 @@ class SeamTracer {
   /// Sets the end of a trace that reached the surface: at a vertex if one is close.
   void end_at_border(Trace& trace) const;
   /// Returns true if no other site is as close at points of the curve between two of its points.
-  [[nodiscard]] bool is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to) const;
+  /// @param at_end  the closest sites of `to`: shortly before it, they may be as close within the tolerance.
+  [[nodiscard]] bool is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to,
+                              const std::vector<TracedSites::Index>& at_end) const;
   [[nodiscard]] std::optional<std::uint32_t> vertex_ahead(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                           double radius, const std::vector<Room>& near) const;
   /// Returns true if both surfaces of a curve are planes.
