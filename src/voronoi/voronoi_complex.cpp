@@ -307,24 +307,25 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   return {};
 }
 
-/// Traces the diagram.
-/// @param flatness  triangles whose corners lie within twice this distance of one plane are one face, mesh units.
+/// Traces the diagram with the usual effort, and with more if that may help.
 /// @return the reason why this is impossible; empty if it succeeded.
-std::string trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, double flatness,
-                  TracedPlaces places, std::uint64_t& most_work, const VoronoiOptions& options, PhaseTimer& timer,
-                  VoronoiComplex& out, const Context& context) {
-  const std::optional<TracedSites> sites = TracedSites::of(solid.surface().mesh, table, exact, flatness, places);
-  timer.lap("sites");
-  if (!sites) return "joined triangles are not flat";
-  out.report.flatness = flatness;
-  out.report.reflex_edges = sites->count(SiteKind::edge);
-  out.report.reflex_vertices = sites->count(SiteKind::vertex);
-  std::string problem = trace(solid, table, *sites, TraceEffort::usual, most_work, options, timer, out, context);
+std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, std::uint64_t& most_work,
+                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+  out.report.reflex_edges = sites.count(SiteKind::edge);
+  out.report.reflex_vertices = sites.count(SiteKind::vertex);
+  std::string problem = trace(solid, table, sites, TraceEffort::usual, most_work, options, timer, out, context);
   // More walks across sheets may find what is missing. They do not help against other problems.
   if (problem == wrong_betti) {
-    problem = trace(solid, table, *sites, TraceEffort::full, most_work, options, timer, out, context);
+    problem = trace(solid, table, sites, TraceEffort::full, most_work, options, timer, out, context);
   }
   return problem;
+}
+
+/// Returns the face of each triangle.
+std::vector<TracedSites::Index> faces_of(const TracedSites& sites, const MeshView& mesh) {
+  std::vector<TracedSites::Index> out;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) out.push_back(sites.face_of(t));
+  return out;
 }
 
 /// Traces the diagram in several ways, until one succeeds. Merged places have the structure of symmetric solids. Where
@@ -339,9 +340,21 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
   constexpr std::uint64_t usual = 300'000'000;
   std::uint64_t most_work =
       options.method == VoronoiMethod::automatic ? usual : std::numeric_limits<std::uint64_t>::max();
+  const MeshView mesh = solid.surface().mesh;
   std::string first;
+  std::vector<TracedSites::Index> tried;  // the faces of a separate way that failed
   for (const auto& [own, places] : ways) {
-    const std::string problem = trace(solid, table, exact, own, places, most_work, options, timer, out, context);
+    const std::optional<TracedSites> sites = TracedSites::of(mesh, table, exact, own, places);
+    timer.lap("sites");
+    std::string problem = "joined triangles are not flat";
+    if (sites) {
+      // Separate ways with the same faces are the same.
+      const bool is_separate = places == TracedPlaces::separate;
+      if (is_separate && tried == faces_of(*sites, mesh)) continue;
+      if (is_separate) tried = faces_of(*sites, mesh);
+      out.report.flatness = own;
+      problem = trace(solid, table, *sites, most_work, options, timer, out, context);
+    }
     if (out.report.traced) return;
     if (first.empty()) first = problem;
   }
