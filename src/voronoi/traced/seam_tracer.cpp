@@ -631,9 +631,12 @@ struct SeamTracer::Run {
     return tracer.closest(*next, tolerance(), curve.sites[0]).sites == curve.sites && go_to(next, leap);
   }
 
-  /// Returns true if a step to a point of the curve passes an event: other sites are closer there.
+  /// Returns true if a step to a point of the curve passes an event: other sites are clearly closer there. Along
+  /// lines, contacts are known exactly.
   [[nodiscard]] bool passes_event(const Vec3d& next) const {
-    const std::vector<Index> there = tracer.closest(next, tolerance(), curve.sites[0]).sites;
+    if (tracer.is_straight(curve)) return false;
+    constexpr double clearly = 64;
+    const std::vector<Index> there = tracer.closest(next, clearly * tolerance(), curve.sites[0]).sites;
     return !std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end());
   }
 

@@ -211,6 +211,30 @@ TEST(TracedDiagram, StopsAtALimitOfItsWork) {
   EXPECT_EQ(enough.structure->curves.size(), whole[0].structure->curves.size());
 }
 
+/// Returns a torus whose vertices are moved at random, so that many faces are nearly parallel, and no symmetry is left.
+TriangleMesh rough_torus(std::uint32_t seed) {
+  TriangleMesh mesh = make_torus({.ring_radius = 1, .tube_radius = 0.4, .ring_segments = 20, .tube_segments = 10});
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> amount(-1e-3, 1e-3);
+  for (Vec3d& p : mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += amount(random);
+  }
+  return mesh;
+}
+
+/// Separate places of a solid in general position have a structure. At events of faces at small angles, rounding of
+/// distances moves the place by more than the tolerance. Some seams bend within small steps.
+TEST(TracedDiagram, SeparatesPlacesOfRoughSolids) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const TriangleMesh mesh = rough_torus(seed);
+    const SiteTable table(mesh);
+    const auto sites = TracedSites::of(mesh, table, polyhedron_sites(mesh, table), 0, TracedPlaces::separate);
+    ASSERT_TRUE(sites);
+    const TracedResult traced = traced_structure(*sites, TraceEffort::usual, usual_work(*sites), {});
+    EXPECT_TRUE(traced.structure) << traced.problem << ", seed " << seed;
+  }
+}
+
 /// Checks the way to the contact of a site with many points of the line.
 void expect_first_contact(const TracedSites& sites, const SeamLine& line, TracedSites::Index other, double most) {
   const double way = way_to_contact(sites, line, other, most);
