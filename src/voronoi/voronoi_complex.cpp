@@ -291,14 +291,9 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   // Points between the corners are up to twice the chord from the wall, so a bound below that would need no end of
   // parts.
   constexpr double in_chords = 4;
-  const double enough = in_chords * chord;
   const std::vector<WallTriangle> walls = wall_triangles(sites, out.complex);
-  report.label_error = label_error(sites, mesh, table, walls, enough, context);
+  report.label_error = label_error(sites, mesh, table, walls, in_chords * chord, context);
   timer.lap("errors");
-  constexpr double surely_wrong = 1.25;
-  if (report.label_error > surely_wrong * enough) {
-    return "a wall is " + exact_text(report.label_error) + " farther from its sites than from the border";
-  }
   report.traced = true;
   report.joined = sites.tolerance();
   report.faces = sites.face_count();
