@@ -163,6 +163,9 @@ def test_a_bracket_as_text(parts, tmp_path):
         "Voronoi walls and the solid's surface together: 1 component, 12 tunnels, 291 voids (each is the region of one "
         "site)"
     )
+    assert {"sites", "traced", "complex", "certified", "time"} <= set(rows)
+    text, _ = run("voronoi", parts / "bracket.ply", "--method", "cubes", "-o", tmp_path / "b.vtp", "--verbose")
+    rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
     assert {"sites", "cubes", "lines", "complex", "certified", "time"} <= set(rows)
 
 
@@ -297,7 +300,7 @@ def test_json_goes_to_a_file_beside_the_text(parts, tmp_path):
 
 # ---- Failed certificates ----
 
-COARSE = ["--depth", 3]
+COARSE = ["--method", "cubes", "--depth", 3]
 
 
 def test_an_uncertified_diagram_is_not_written(parts, tmp_path):

@@ -32,7 +32,7 @@ def test_options_apply_and_wrong_input_is_rejected(box):
     coarse = blum.voronoi_complex(box, method="cubes", resolution=1)
     fine = blum.voronoi_complex(box, method="cubes", resolution=32)
     assert coarse.report.cubes < fine.report.cubes and fine.report.certified and not fine.report.exact
-    failed = blum.voronoi_complex(blum.generate("gear"), resolution=1, depth=3)
+    failed = blum.voronoi_complex(blum.generate("gear"), method="cubes", resolution=1, depth=3)
     assert not failed.report.certified and failed.report.failing
     with pytest.raises(blum.InvalidOption, match="allow_uncertified"):
         failed.write("never.npz")
@@ -60,7 +60,7 @@ def test_files(box, tmp_path):
     metadata = json.loads(str(arrays["metadata"]))
     assert metadata["content"] == "Voronoi diagram" and metadata["certified"] == "true"
     assert float(metadata["hausdorff_bound"]) == found.report.hausdorff_bound
-    failed = blum.voronoi_complex(blum.generate("gear"), resolution=1, depth=3)
+    failed = blum.voronoi_complex(blum.generate("gear"), method="cubes", resolution=1, depth=3)
     failed.write(tmp_path / "failed.npz", allow_uncertified=True)
     arrays_of_failed = np.load(tmp_path / "failed.npz")
     assert json.loads(str(arrays_of_failed["metadata"]))["failing_cubes"] == str(len(failed.report.failing))
