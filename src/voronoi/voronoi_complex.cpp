@@ -250,15 +250,12 @@ std::vector<WallTriangle> wall_triangles(const TracedSites& sites, const Complex
 constexpr const char* wrong_betti = "the traced diagram does not have the expected Betti numbers";
 
 /// Traces the diagram with one effort.
-/// @param most_work  limit on the work of tracing, which is reduced by the work that was done.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
-                  std::uint64_t& most_work, const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out,
-                  const Context& context) {
+                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
   const MeshView mesh = solid.surface().mesh;
-  const TracedResult traced = traced_structure(sites, effort, std::min(most_work, usual_work(sites)), context);
+  const TracedResult traced = traced_structure(sites, effort, usual_work(sites), context);
   timer.lap("traces");
-  most_work -= std::min(most_work, traced.work);
   if (!traced.structure) {
     const Vec3d place = traced.place + sites.origin();
     return traced.problem + " near " + exact_text(place.x) + ", " + exact_text(place.y) + ", " + exact_text(place.z);
@@ -304,14 +301,14 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
 
 /// Traces the diagram with the usual effort, and with more if that may help.
 /// @return the reason why this is impossible; empty if it succeeded.
-std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, std::uint64_t& most_work,
-                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, const VoronoiOptions& options,
+                  PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
   out.report.reflex_edges = sites.count(SiteKind::edge);
   out.report.reflex_vertices = sites.count(SiteKind::vertex);
-  std::string problem = trace(solid, table, sites, TraceEffort::usual, most_work, options, timer, out, context);
+  std::string problem = trace(solid, table, sites, TraceEffort::usual, options, timer, out, context);
   // More walks across sheets may find what is missing. They do not help against other problems.
   if (problem == wrong_betti) {
-    problem = trace(solid, table, sites, TraceEffort::full, most_work, options, timer, out, context);
+    problem = trace(solid, table, sites, TraceEffort::full, options, timer, out, context);
   }
   return problem;
 }
@@ -331,10 +328,6 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
   std::vector<std::pair<double, TracedPlaces>> ways{{flatness, TracedPlaces::merged},
                                                     {flatness, TracedPlaces::separate}};
   if (flatness > 0) ways.emplace_back(0.0, TracedPlaces::separate);
-  // By default, a diagram that cannot be traced must not take much longer than its cubes.
-  constexpr std::uint64_t usual = 300'000'000;
-  std::uint64_t most_work =
-      options.method == VoronoiMethod::automatic ? usual : std::numeric_limits<std::uint64_t>::max();
   const MeshView mesh = solid.surface().mesh;
   std::string first;
   std::vector<TracedSites::Index> tried;  // the faces of a separate way that failed
@@ -348,19 +341,12 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
       if (is_separate && tried == faces_of(*sites, mesh)) continue;
       if (is_separate) tried = faces_of(*sites, mesh);
       out.report.flatness = own;
-      problem = trace(solid, table, *sites, most_work, options, timer, out, context);
+      problem = trace(solid, table, *sites, options, timer, out, context);
     }
     if (out.report.traced) return;
     if (first.empty()) first = problem;
   }
   out.report.trace_problem = first;
-}
-
-/// Returns true if tracing is tried for solids that are not convex. By default, medial axes come from cubes: their
-/// sheets pass smoothly from one pair of sites to another, so fewer triangles represent them.
-bool is_traced(const VoronoiOptions& options) {
-  if (options.method != VoronoiMethod::automatic) return options.method == VoronoiMethod::traced;
-  return options.part != VoronoiPart::medial_axis && !options.tolerance;
 }
 
 /// @param phases  phases that were already completed.
@@ -382,7 +368,7 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
       return out;
     }
   }
-  if (is_traced(options)) {
+  if (options.method == VoronoiMethod::traced) {
     trace(solid, table, sites, options, timer, out, context);
     if (report.traced) return out;
   }

@@ -39,11 +39,9 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,  ///< If all bodies are convex: planes. Otherwise: seams are traced. Cubes if this fails or takes long, for
-              ///< medial axes, and if a tolerance is given: only cubes bound the distance from the exact diagram.
+  automatic,  ///< If all bodies are convex: planes. Otherwise: cubes.
   cubes,      ///< Cubes of an octree, each with a proof of its topology.
-  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced, which may take minutes. If it fails:
-              ///< cubes.
+  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced. If this fails: cubes.
 };
 
 template <>
@@ -87,10 +85,9 @@ struct Description<VoronoiOptions> {
   static constexpr std::tuple members{
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
-      Member{
-          "method", &VoronoiOptions::method, "",
-          "auto: exact planes if all bodies are convex, otherwise traced seams, for medial axes cubes; cubes: always; "
-          "traced: seams also for medial axes"},
+      Member{"method", &VoronoiOptions::method, "",
+             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always; traced: seams are followed "
+             "instead, if this succeeds"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "planes and traces: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
