@@ -22,6 +22,7 @@
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "peers/segment_voronoi.hpp"
+#include "support/double_cone.hpp"
 #include "support/measure.hpp"
 
 namespace blum::bench {
@@ -83,22 +84,6 @@ void convex_case(const std::string& name, const TriangleMesh& mesh, bool also_cu
     if (!also_cubes) continue;
     add(full_name + "/cubes", [=](benchmark::State& state) { run(state, placed, VoronoiMethod::cubes); });
   }
-}
-
-/// Double cone over a regular polygon. Many planes meet in its ends.
-TriangleMesh double_cone(std::uint32_t sides) {
-  TriangleMesh mesh;
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    const double angle = 2 * std::numbers::pi * k / sides;
-    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0});
-  }
-  mesh.vertices.push_back({0, 0, 1});
-  mesh.vertices.push_back({0, 0, -1});
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    mesh.triangles.push_back({k, (k + 1) % sides, sides});
-    mesh.triangles.push_back({(k + 1) % sides, k, sides + 1});
-  }
-  return mesh;
 }
 
 /// Medial axes from exact walls and from the grid, at one angle.
@@ -211,7 +196,7 @@ const bool registered = [] {
   for (const int frequency : {4, 8, 16, 32}) {
     convex_case("sphere-" + std::to_string(frequency), make_sphere({.frequency = frequency}), frequency == 4);
   }
-  convex_case("double-cone-1000", double_cone(1000), false);
+  convex_case("double-cone-1000", test::double_cone(1000), false);
   add_case("box", make_box());
   add_case("star", make_star());
   for (const int sides : {16, 64, 256}) {

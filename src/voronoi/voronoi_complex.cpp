@@ -313,22 +313,15 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   return problem;
 }
 
-/// Returns the face of each triangle.
-std::vector<TracedSites::Index> faces_of(const TracedSites& sites, const MeshView& mesh) {
-  std::vector<TracedSites::Index> out;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) out.push_back(sites.face_of(t));
-  return out;
-}
-
 /// Traces the diagram in several ways, until one succeeds. Merged places have the structure of symmetric solids. Where
 /// coordinates are rounded, symmetry is broken, and separate places may succeed.
 void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, const VoronoiOptions& options,
            PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
-  const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(solid.surface().mesh);
+  const MeshView mesh = solid.surface().mesh;
+  const double flatness = options.flatness ? *options.flatness : rounding_of_coordinates(mesh);
   std::vector<std::pair<double, TracedPlaces>> ways{{flatness, TracedPlaces::merged},
                                                     {flatness, TracedPlaces::separate}};
   if (flatness > 0) ways.emplace_back(0.0, TracedPlaces::separate);
-  const MeshView mesh = solid.surface().mesh;
   std::string first;
   std::vector<TracedSites::Index> tried;  // the faces of a separate way that failed
   for (const auto& [own, places] : ways) {
@@ -337,9 +330,10 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
     std::string problem = "joined triangles are not flat";
     if (sites) {
       // Separate ways with the same faces are the same.
-      const bool is_separate = places == TracedPlaces::separate;
-      if (is_separate && tried == faces_of(*sites, mesh)) continue;
-      if (is_separate) tried = faces_of(*sites, mesh);
+      if (places == TracedPlaces::separate) {
+        if (tried == sites->faces()) continue;
+        tried = sites->faces();
+      }
       out.report.flatness = own;
       problem = trace(solid, table, *sites, options, timer, out, context);
     }

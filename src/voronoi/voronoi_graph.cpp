@@ -11,7 +11,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
-#include "voronoi/patch_numbers.hpp"
+#include "voronoi/site_patches.hpp"
 
 namespace blum {
 namespace {
@@ -254,15 +254,15 @@ class GraphBuilder {
 Complex complex_of(const Complex& complex, std::span<const VoronoiPatch> patches) {
   const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
   const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
-  const voronoi::PatchNumbers numbers(patches);
+  const voronoi::SitePatches patch_of(patches);
   Complex out;
   out.positions = complex.positions;
   out.vertex_columns = Columns(out.positions.size());
   if (const Column* junction = complex.vertex_columns.find("junction")) out.vertex_columns.add(*junction);
   std::vector<std::int32_t> patch_a, patch_b;
   for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-    std::int32_t a = numbers.of_side(site_a[t]);
-    std::int32_t b = numbers.of_side(site_b[t]);
+    std::int32_t a = patch_of.of_side(site_a[t]);
+    std::int32_t b = patch_of.of_side(site_b[t]);
     if (a == b) continue;
     auto [p, q, r] = complex.triangles[t];
     if (a > b) {  // corners run counterclockwise as seen from the region of patch b

@@ -13,7 +13,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/surface_patches.hpp"
-#include "voronoi/patch_numbers.hpp"
+#include "voronoi/site_patches.hpp"
 
 namespace blum {
 namespace {
@@ -180,10 +180,10 @@ void add_patch_columns(Complex& complex, std::span<const VoronoiPatch> patches) 
   validate(complex);
   const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
   const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
-  const voronoi::PatchNumbers numbers(patches);
+  const voronoi::SitePatches patch_of(patches);
   std::array<std::vector<std::int32_t>, 2> columns;
   for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-    const auto [a, b] = std::minmax({numbers.of_side(site_a[t]), numbers.of_side(site_b[t])});
+    const auto [a, b] = std::minmax({patch_of.of_side(site_a[t]), patch_of.of_side(site_b[t])});
     columns[0].push_back(a);
     columns[1].push_back(b);
   }

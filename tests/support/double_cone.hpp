@@ -1,4 +1,4 @@
-// Blum: a double cone for tests, in whose ends many planes meet. SPDX-License-Identifier: Apache-2.0
+// Blum: a double cone for tests and benchmarks, in whose ends many planes meet. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>

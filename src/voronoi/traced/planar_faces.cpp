@@ -13,15 +13,20 @@
 namespace blum::voronoi {
 namespace {
 
+/// Returns the normal of a triangle. Its length is twice the area.
+Vec3d normal_of(const MeshView& mesh, std::span<const Vec3d> vertices, std::uint32_t t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  return cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+}
+
 /// Joins triangles, and keeps the plane of the largest triangle of each set.
 class Joiner {
  public:
   Joiner(const MeshView& mesh, std::span<const Vec3d> vertices, double flatness)
       : mesh_(mesh), vertices_(vertices), flatness_(flatness), sets_(mesh.triangles.size()) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      const Vec3d normal = cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
-      planes_.push_back({unit(normal), vertices[a], length(normal)});
+      const Vec3d normal = normal_of(mesh, vertices, t);
+      planes_.push_back({unit(normal), vertices[mesh.triangles[t][0]], length(normal)});
       members_.push_back({t});
     }
   }
@@ -54,15 +59,11 @@ class Joiner {
   [[nodiscard]] bool is_near(const Plane& plane, const std::vector<std::uint32_t>& triangles) const {
     return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
       const auto& corners = mesh_.triangles[t];
-      return dot(plane.normal, planes_of(t)) > 0 && std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+      return dot(plane.normal, normal_of(mesh_, vertices_, t)) > 0 &&
+             std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
                return std::abs(dot(plane.normal, vertices_[v] - plane.point)) <= 2 * flatness_;
              });
     });
-  }
-
-  [[nodiscard]] Vec3d planes_of(std::uint32_t t) const {
-    const auto& [a, b, c] = mesh_.triangles[t];
-    return cross(vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]);
   }
 
   const MeshView& mesh_;
@@ -76,14 +77,15 @@ class Joiner {
 /// The system of equations: each corner of a face lies in its plane.
 class Flattener {
  public:
-  Flattener(const MeshView& mesh, const JoinedTriangles& joined, std::vector<Vec3d>& vertices) : vertices_(vertices) {
+  Flattener(const MeshView& mesh, std::span<const std::uint32_t> face_of, std::vector<Vec3d>& vertices)
+      : vertices_(vertices) {
     std::vector<std::vector<std::uint32_t>> corners(mesh.triangles.size());
     std::vector<Vec3d> normals(mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      std::vector<std::uint32_t>& own = corners[joined.face_of[t]];
-      own.insert(own.end(), {a, b, c});
-      normals[joined.face_of[t]] += cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+      const Triangle& triangle = mesh.triangles[t];
+      std::vector<std::uint32_t>& own = corners[face_of[t]];
+      own.insert(own.end(), triangle.begin(), triangle.end());
+      normals[face_of[t]] += normal_of(mesh, vertices, t);
     }
     for (std::uint32_t t = 0; t < corners.size(); ++t) {
       detail::sort_unique(corners[t]);
@@ -99,14 +101,12 @@ class Flattener {
       const std::vector<Face> faces_before = faces_;
       step();
       const double now = residual();
-      if (!(now < 0.5 * worst)) {
-        if (!(now < worst)) {
-          vertices_ = before;
-          faces_ = faces_before;
-          return worst;
-        }
-        return now;
+      if (!(now < worst)) {
+        vertices_ = before;
+        faces_ = faces_before;
+        return worst;
       }
+      if (!(now < 0.5 * worst)) return now;
       worst = now;
     }
     return worst;
@@ -141,6 +141,12 @@ class Flattener {
     return dot(face.normal, vertices_[v] - face.middle) - face.height;
   }
 
+  /// Returns how fast the height of a vertex changes with the turns and the height of the plane.
+  [[nodiscard]] Vec3d rates(const Face& face, std::uint32_t v) const {
+    const Vec3d away = vertices_[v] - face.middle;
+    return {dot(face.axes[0], away), dot(face.axes[1], away), -1};
+  }
+
   [[nodiscard]] double residual() const {
     double worst = 0;
     for (const Face& face : faces_) {
@@ -165,8 +171,7 @@ class Flattener {
       Vec3d plane;
       for (std::uint32_t e = face.first; e < face.first + face.count; ++e) {
         out.vertices[corner_[e]] += face.normal * y[e];
-        const Vec3d away = vertices_[corner_[e]] - face.middle;
-        plane += Vec3d{dot(face.axes[0], away), dot(face.axes[1], away), -1} * y[e];
+        plane += rates(face, corner_[e]) * y[e];
       }
       out.planes[f] = plane;
     }
@@ -176,9 +181,7 @@ class Flattener {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const Face& face = faces_[f];
       for (std::uint32_t e = face.first; e < face.first + face.count; ++e) {
-        const Vec3d away = vertices_[corner_[e]] - face.middle;
-        out[e] = dot(face.normal, change.vertices[corner_[e]]) +
-                 dot(Vec3d{dot(face.axes[0], away), dot(face.axes[1], away), -1}, change.planes[f]);
+        out[e] = dot(face.normal, change.vertices[corner_[e]]) + dot(rates(face, corner_[e]), change.planes[f]);
       }
     }
   }
@@ -230,8 +233,8 @@ class Flattener {
 
 }  // namespace
 
-JoinedTriangles join_flat_triangles(const MeshView& mesh, std::span<const Vec3d> vertices, const SiteTable& table,
-                                    const PolyhedronSites& sites, double flatness) {
+std::vector<std::uint32_t> join_flat_triangles(const MeshView& mesh, std::span<const Vec3d> vertices,
+                                               const SiteTable& table, const PolyhedronSites& sites, double flatness) {
   Joiner joiner(mesh, vertices, flatness);
   const auto edge_count = static_cast<std::uint32_t>(table.edge_count());
   for (std::uint32_t e = 0; e < edge_count; ++e) {
@@ -241,16 +244,13 @@ JoinedTriangles join_flat_triangles(const MeshView& mesh, std::span<const Vec3d>
     for (std::uint32_t e = 0; e < edge_count; ++e)
       joiner.join(sites.triangles_of[e][0], sites.triangles_of[e][1], false);
   }
-  JoinedTriangles out;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) out.face_of.push_back(joiner.set_of(t));
-  for (std::uint32_t e = 0; e < edge_count; ++e) {
-    out.is_flat.push_back(out.face_of[sites.triangles_of[e][0]] == out.face_of[sites.triangles_of[e][1]]);
-  }
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) out.push_back(joiner.set_of(t));
   return out;
 }
 
-double flatten_faces(const MeshView& mesh, const JoinedTriangles& faces, std::vector<Vec3d>& vertices) {
-  return Flattener(mesh, faces, vertices).solve();
+double flatten_faces(const MeshView& mesh, std::span<const std::uint32_t> face_of, std::vector<Vec3d>& vertices) {
+  return Flattener(mesh, face_of, vertices).solve();
 }
 
 }  // namespace blum::voronoi

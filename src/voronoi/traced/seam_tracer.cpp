@@ -210,7 +210,7 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
         if (length(first) < 1e-9 || length(second) < 1e-9) continue;
         if (flat_meeting(near, *found)) return {*found};
         const bool is_known = std::any_of(
-            out.begin(), out.end(), [&](const Vec3d& p) { return length(p - *found) <= 16 * sites_.tolerance(); });
+            out.begin(), out.end(), [&](const Vec3d& p) { return length(p - *found) <= sites_.precision().apart; });
         if (!is_known) out.push_back(*found);
       }
     }

@@ -12,7 +12,6 @@
 #include "voronoi/traced/planar_faces.hpp"
 
 namespace blum::voronoi {
-
 namespace {
 
 /// Returns true if a ray along the first axis, from a point of a face's plane, crosses a side.
@@ -77,8 +76,6 @@ SideIndex index_of(const std::vector<DomainSide>& sides) {
   return out;
 }
 
-}  // namespace
-
 /// Returns the differences that count as 0.
 /// @param flatness  of joined triangles that stay where they are; otherwise 0.
 TracePrecision precision_of(const Box3& box, double flatness, TracedPlaces places) {
@@ -94,6 +91,8 @@ TracePrecision precision_of(const Box3& box, double flatness, TracedPlaces place
   return {distance, 16 * distance, 1e-13, 1e-10};
 }
 
+}  // namespace
+
 /// Builds the sites. Coordinates are relative to the middle of the box.
 class SiteFinder {
  public:
@@ -103,7 +102,8 @@ class SiteFinder {
 
   std::optional<TracedSites> find() {
     place();
-    if (!add_faces() || !add_edges()) return std::nullopt;
+    if (!add_faces()) return std::nullopt;
+    add_edges();
     add_vertices();
     std::vector<Box3> boxes;
     for (TracedSite& site : out_.sites_) {
@@ -138,13 +138,10 @@ class SiteFinder {
 
   /// Moves vertices so that joined faces are flat.
   /// @return false if they stay bent, or triangles turn around.
-  bool flatten(const JoinedTriangles& joined) {
+  bool flatten(const std::vector<std::uint32_t>& face_of) {
     const std::vector<Vec3d> before = out_.vertices_;
-    const double left = flatten_faces(mesh_, joined, out_.vertices_);
+    const double left = flatten_faces(mesh_, face_of, out_.vertices_);
     if (!(left <= 0.1 * out_.precision_.distance)) return false;
-    for (std::size_t v = 0; v < before.size(); ++v) {
-      out_.moved_ = std::max(out_.moved_, length(before[v] - out_.vertices_[v]));
-    }
     return std::all_of(mesh_.triangles.begin(), mesh_.triangles.end(), [&](const Triangle& t) {
       const auto normal = [&](const std::vector<Vec3d>& at) { return cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]); };
       return dot(normal(before), normal(out_.vertices_)) > 0;
@@ -153,13 +150,12 @@ class SiteFinder {
 
   /// Joins triangles to faces. Moves the vertices so that these are flat, if that is asked for.
   bool add_faces() {
-    JoinedTriangles joined = join_flat_triangles(mesh_, out_.vertices_, table_, sites_, flatness_);
-    is_flat_ = std::move(joined.is_flat);
+    const std::vector<std::uint32_t> joined = join_flat_triangles(mesh_, out_.vertices_, table_, sites_, flatness_);
     if (places_ == TracedPlaces::separate && !flatten(joined)) return false;
     const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
     out_.face_of_.assign(count, none);
     for (std::uint32_t t = 0; t < count; ++t) {
-      const std::uint32_t root = joined.face_of[t];
+      const std::uint32_t root = joined[t];
       if (out_.face_of_[root] == none) {
         out_.face_of_[root] = static_cast<Index>(out_.sites_.size());
         TracedSite& face = out_.sites_.emplace_back();
@@ -187,13 +183,12 @@ class SiteFinder {
   }
 
   /// Adds the boundaries of faces and the reflex edges.
-  bool add_edges() {
+  void add_edges() {
     for (std::uint32_t e = 0; e < table_.edge_count(); ++e) {
-      if (is_flat_[e]) continue;
-      const auto [a, b] = table_.edges()[e];
       const std::array<Index, 2> faces{out_.face_of_[sites_.triangles_of[e][0]],
                                        out_.face_of_[sites_.triangles_of[e][1]]};
-      if (faces[0] == faces[1]) return false;
+      if (faces[0] == faces[1]) continue;
+      const auto [a, b] = table_.edges()[e];
       const bool is_reflex = sites_.turn[e] == EdgeTurn::reflex;
       BorderEdge border{{a, b}, faces};
       const Vec3d& p = out_.vertices_[a];
@@ -227,7 +222,6 @@ class SiteFinder {
       }
       out_.edges_.push_back(border);
     }
-    return true;
   }
 
   /// Returns true if a face is the set of points inside all its sides. Large faces do not count.
@@ -311,7 +305,6 @@ class SiteFinder {
   const PolyhedronSites& sites_;
   const double flatness_;
   const TracedPlaces places_;
-  std::vector<bool> is_flat_;
   TracedSites out_;
 };
 
@@ -402,12 +395,7 @@ TracedSites::OutsideSide TracedSites::outside_side(Index i, const Vec3d& x) cons
   OutsideSide out;
   double least = infinite, second = infinite;  // squared
   for (const DomainSide& side : face.sides) {
-    const double ax = side.from[0] - px, ay = side.from[1] - py;
-    const double bx = side.to[0] - px, by = side.to[1] - py;
-    const double dx = bx - ax, dy = by - ay;
-    const double t = std::clamp(-(ax * dx + ay * dy) / (dx * dx + dy * dy), 0.0, 1.0);
-    const double qx = ax + t * dx, qy = ay + t * dy;
-    const double squared = qx * qx + qy * qy;
+    const double squared = squared_distance(side, px, py);
     if (squared < least) {
       second = least;
       least = squared;

@@ -95,6 +95,8 @@ class TracedSites {
   [[nodiscard]] std::size_t face_count() const { return count(SiteKind::face); }
   /// Returns the number of holes in all faces together.
   [[nodiscard]] std::size_t hole_count() const;
+  /// Returns the face of each triangle of the mesh.
+  [[nodiscard]] const std::vector<Index>& faces() const { return face_of_; }
   /// Returns the face of a triangle of the mesh.
   [[nodiscard]] Index face_of(std::uint32_t triangle) const { return face_of_[triangle]; }
   /// Returns the middle of the box around the solid, in the coordinates of the mesh.
@@ -104,8 +106,6 @@ class TracedSites {
   /// Distances below this value, in mesh units, count as 0.
   [[nodiscard]] double tolerance() const { return precision_.distance; }
   [[nodiscard]] const TracePrecision& precision() const { return precision_; }
-  /// Returns the largest distance that a vertex moved so that faces are flat, mesh units.
-  [[nodiscard]] double moved() const { return moved_; }
 
   /// Returns the distance within which the place is unknown where a curve touches a region: there, distances differ by
   /// the square of the way.
@@ -188,7 +188,6 @@ class TracedSites {
   Vec3d origin_;
   double extent_ = 0;
   TracePrecision precision_;
-  double moved_ = 0;
 };
 
 }  // namespace blum::voronoi

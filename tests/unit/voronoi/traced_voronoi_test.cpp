@@ -64,19 +64,20 @@ TracedSites sites_of(const TriangleMesh& mesh) {
 }
 
 /// Returns the largest distance of a corner from the plane of its face's largest triangle.
-double largest_height(const TriangleMesh& mesh, const JoinedTriangles& joined, const std::vector<Vec3d>& at) {
+double largest_height(const TriangleMesh& mesh, const std::vector<std::uint32_t>& face_of,
+                      const std::vector<Vec3d>& at) {
   const auto normal_of = [&](std::size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
     return cross(at[b] - at[a], at[c] - at[a]);
   };
   std::map<std::uint32_t, std::size_t> largest;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    std::size_t& of_face = largest.try_emplace(joined.face_of[t], t).first->second;
+    std::size_t& of_face = largest.try_emplace(face_of[t], t).first->second;
     if (squared_length(normal_of(t)) > squared_length(normal_of(of_face))) of_face = t;
   }
   double worst = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::size_t of_face = largest[joined.face_of[t]];
+    const std::size_t of_face = largest[face_of[t]];
     for (const std::uint32_t v : mesh.triangles[t]) {
       worst = std::max(worst, std::abs(dot(unit(normal_of(of_face)), at[v] - at[mesh.triangles[of_face][0]])));
     }
@@ -132,9 +133,9 @@ TEST(TracedDiagram, JoinsAndFlattensFacesOfRoundedCoordinates) {
   const TriangleMesh mesh = test::in_single_precision(test::turned(prism(outline, 1)));
   const SiteTable table(mesh);
   const double flatness = rounding_of_coordinates(mesh);
-  const JoinedTriangles joined =
+  const std::vector<std::uint32_t> joined =
       join_flat_triangles(mesh, mesh.vertices, table, polyhedron_sites(mesh, table), flatness);
-  EXPECT_EQ(std::set<std::uint32_t>(joined.face_of.begin(), joined.face_of.end()).size(), 14U);
+  EXPECT_EQ(std::set<std::uint32_t>(joined.begin(), joined.end()).size(), 14U);
   std::vector<Vec3d> vertices = mesh.vertices;
   EXPECT_GT(largest_height(mesh, joined, vertices), 1e-9) << "rounding bends faces";
   EXPECT_LT(flatten_faces(mesh, joined, vertices), 1e-15);

@@ -13,10 +13,10 @@
 namespace blum::voronoi {
 
 /// For each site, the number of its patch.
-class PatchNumbers {
+class SitePatches {
  public:
   /// @throws InvalidOption if a site has a negative number, or belongs to two patches.
-  explicit PatchNumbers(std::span<const VoronoiPatch> patches) {
+  explicit SitePatches(std::span<const VoronoiPatch> patches) {
     for (std::size_t k = 0; k < patches.size(); ++k) {
       for (const std::int32_t site : patches[k].sites) {
         const auto at = static_cast<std::size_t>(site);
