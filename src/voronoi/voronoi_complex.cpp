@@ -31,6 +31,7 @@
 #include "voronoi/planes/plane_complex.hpp"
 #include "voronoi/subdivision.hpp"
 #include "voronoi/traced/label_error.hpp"
+#include "voronoi/traced/proof/structure_proof.hpp"
 #include "voronoi/traced/traced_complex.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 #include "voronoi/traced/traced_structure.hpp"
@@ -247,6 +248,22 @@ std::vector<WallTriangle> wall_triangles(const TracedSites& sites, const Complex
   return out;
 }
 
+void add_proof(const TracedSites& sites, const StructureProof& proof, VoronoiReport& report) {
+  report.moved = proof.moved;
+  report.junctions = proof.junctions;
+  report.proven_junctions = proof.proven_junctions;
+  report.seams = proof.seams;
+  report.proven_seams = proof.proven_seams;
+  for (const OpenPlace& place : proof.open) {
+    OpenVoronoiPlace& out = report.open.emplace_back();
+    out.position = place.at + sites.origin();
+    out.size = place.size;
+    out.doubt = place.doubt;
+    for (const TracedSites::Index i : place.sites) out.sites.push_back(static_cast<std::uint32_t>(sites[i].number));
+    std::sort(out.sites.begin(), out.sites.end());
+  }
+}
+
 constexpr const char* wrong_betti = "the traced diagram does not have the expected Betti numbers";
 
 /// Traces the diagram with one effort.
@@ -291,11 +308,14 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   const std::vector<WallTriangle> walls = wall_triangles(sites, out.complex);
   report.label_error = label_error(sites, mesh, table, walls, in_chords * chord, context);
   timer.lap("errors");
+  add_proof(sites, prove_structure(sites, mesh, table, *traced.structure, context), report);
+  timer.lap("proof");
   report.traced = true;
   report.joined = sites.tolerance();
   report.faces = sites.face_count();
   report.chord = chord;
   report.certified = report.found == report.expected;
+  report.proven = report.certified && report.open.empty();
   return {};
 }
 

@@ -170,8 +170,14 @@ std::string certificate_text(VoronoiPart part, bool is_exact) {
   return "same topology (homology) as the exact diagram";
 }
 
+std::string proof_text(const VoronoiReport& report) {
+  return count_text(report.proven_junctions) + " of " + plural(report.junctions, "junction", "junctions") + ", " +
+         count_text(report.proven_seams) + " of " + plural(report.seams, "seam", "seams") +
+         (report.open.empty() ? "" : "; open places: see \"open\" in the JSON summary");
+}
+
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, double size, TextTable& table) {
-  table.add("certified", report.certified ? "yes: " + certificate_text(part, report.exact) : "NO");
+  table.add("certified", report.certified ? "yes: " + certificate_text(part, report.exact || report.proven) : "NO");
   table.add("topology", subject_of(part) + ": " + betti_text(report.found) + regions_text(report, part) +
                             (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
   table.add("sites", sites_text(report));
@@ -185,6 +191,7 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
   if (report.traced) {
     table.add("traced", "walls are at most " + share_text(report.label_error, size) +
                             " farther from their own sites than from the surface");
+    table.add("proven", proof_text(report));
   } else if (!report.trace_problem.empty()) {
     table.add("traced", "no, cubes instead: " + report.trace_problem);
   }

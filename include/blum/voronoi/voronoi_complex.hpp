@@ -147,6 +147,43 @@ struct Description<FailingVoronoiCell> {
   };
 };
 
+/// Reason why a junction or a piece of a seam is not proven.
+enum class VoronoiDoubt : std::uint8_t {
+  close,       ///< Other sites are nearly as close, or sites meet at angles that are too small.
+  degenerate,  ///< More sites are equally close than in general position, or their number is uncertain.
+  seams        ///< The number of seams at the junction is not that of general position.
+};
+
+template <>
+struct Description<VoronoiDoubt> {
+  static constexpr std::string_view name = "VoronoiDoubt";
+  static constexpr std::array values{NamedValue{VoronoiDoubt::close, "close"},
+                                     NamedValue{VoronoiDoubt::degenerate, "degenerate"},
+                                     NamedValue{VoronoiDoubt::seams, "seams"}};
+};
+
+/// Junction, or piece of a seam, of a traced diagram that is not proven.
+struct OpenVoronoiPlace {
+  Vec3d position{};                  ///< Mesh units.
+  double size = 0;                   ///< Of the place: outside, all is proven. Mesh units.
+  std::vector<std::uint32_t> sites;  ///< Closest sites, as in VoronoiComplex::complex, ascending.
+  VoronoiDoubt doubt = VoronoiDoubt::close;
+};
+
+template <>
+struct Description<OpenVoronoiPlace> {
+  static constexpr std::string_view name = "OpenVoronoiPlace";
+  static constexpr std::string_view doc = "Junction, or piece of a seam, that is not proven";
+  static constexpr std::tuple members{
+      Member{"position", &OpenVoronoiPlace::position, "mesh units", "of the place"},
+      Member{"size", &OpenVoronoiPlace::size, "mesh units", "of the place"},
+      Member{"sites", &OpenVoronoiPlace::sites, "", "numbers of the closest sites"},
+      Member{"doubt", &OpenVoronoiPlace::doubt, "",
+             "close: other sites are nearly as close; degenerate: more sites than in general position; seams: not the "
+             "number of seams of general position"},
+  };
+};
+
 struct VoronoiReport {
   /// True if every cube passes the test, no signs contradict each other, and the Betti numbers are the expected ones.
   /// Then the complex provably has the homology of the requested part of the exact diagram.
@@ -167,6 +204,18 @@ struct VoronoiReport {
   /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
   /// between vertices, mesh units.
   double chord = 0;
+  /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
+  /// diagram of the polyhedron whose corners have moved by at most `moved` so that its faces are flat.
+  bool proven = false;
+  double moved = 0;  ///< If traced: largest distance by which a corner was moved, mesh units.
+  /// If traced: junctions inside the solid, and seams, of the whole diagram.
+  std::size_t junctions = 0;
+  std::size_t seams = 0;
+  /// If traced: junctions and seams that exist in this exact diagram as they were traced.
+  std::size_t proven_junctions = 0;
+  std::size_t proven_seams = 0;
+  /// If traced: places where the proof did not succeed. Each other junction is proven. A seam is open at one place.
+  std::vector<OpenVoronoiPlace> open;
   std::string trace_problem;  ///< If tracing failed: the reason and the place.
   BettiNumbers expected{};    ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};       ///< Betti numbers of the complex.
@@ -220,6 +269,17 @@ struct Description<VoronoiReport> {
              "if traced: points of walls are at most this much farther from the walls' sites than from the border"},
       Member{"chord", &VoronoiReport::chord, "mesh units",
              "if traced: largest distance of chords from curved seams and walls, at their middles"},
+      Member{"proven", &VoronoiReport::proven, "",
+             "true if traced, and each sheet, seam and junction is proven to be that of the exact diagram"},
+      Member{"moved", &VoronoiReport::moved, "mesh units",
+             "if traced: largest distance by which a corner was moved so that faces are flat"},
+      Member{"junctions", &VoronoiReport::junctions, "", "if traced: junctions of the whole diagram inside the solid"},
+      Member{"seams", &VoronoiReport::seams, "", "if traced: seams of the whole diagram"},
+      Member{"proven_junctions", &VoronoiReport::proven_junctions, "",
+             "if traced: junctions that are proven to exist in the exact diagram"},
+      Member{"proven_seams", &VoronoiReport::proven_seams, "",
+             "if traced: seams that are proven to exist in the exact diagram"},
+      Member{"open", &VoronoiReport::open, "", "if traced: junctions and pieces of seams that are not proven"},
       Member{"trace_problem", &VoronoiReport::trace_problem, "", "reason why tracing failed; empty if it did not"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},

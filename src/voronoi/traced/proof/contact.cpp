@@ -1,0 +1,304 @@
+#include "voronoi/traced/proof/contact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "blum/core/union_find.hpp"
+#include "blum/geometry/closest_point.hpp"
+#include "voronoi/label_geometry.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+using Index = TracedSites::Index;
+
+LinearBound operator-(const LinearBound& a, const LinearBound& b) {
+  return {{a.value.value - b.value.value, a.value.error + b.value.error},
+          a.slope - b.slope,
+          a.turned + b.turned,
+          a.bend + b.bend};
+}
+
+/// An axis, and one of its two directions.
+struct AxisDirection {
+  std::size_t axis;
+  bool is_positive;
+};
+
+/// Returns the axis at right angles to a face, if there is one.
+std::optional<AxisDirection> axis_of(const TracedSite& site) {
+  if (site.kind != SiteKind::face) return std::nullopt;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (std::abs(site.direction[axis]) == 1) return AxisDirection{axis, site.direction[axis] > 0};
+  }
+  return std::nullopt;
+}
+
+/// Returns true if a + b = c + d, exactly.
+bool are_equal_sums(double a, double b, double c, double d) {
+  // The rounding error of a sum is a double (Knuth 1969).
+  const auto exact_sum = [](double x, double y) {
+    const double sum = x + y, part = sum - x;
+    return std::pair{sum, (x - (sum - part)) + (y - part)};
+  };
+  return exact_sum(a, b) == exact_sum(c, d);
+}
+
+/// Returns the distance of a point from a segment.
+double distance_from(const std::array<Vec3d, 2>& ends, const Vec3d& q) {
+  const Vec3d along = ends[1] - ends[0];
+  const double t = std::clamp(dot(q - ends[0], along) / squared_length(along), 0.0, 1.0);
+  return length(ends[0] + along * t - q);
+}
+
+}  // namespace
+
+double Tube::reach() const {
+  return std::sqrt(half * half + radius * radius);
+}
+
+double Tube::change(const Vec3d& slope) const {
+  const double axial = std::abs(dot(slope, along));
+  return half * axial + radius * length(half > 0 ? slope - along * dot(slope, along) : slope);
+}
+
+Contact::Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vector<Index>& members)
+    : bounds_(bounds), sites_(bounds.sites()), mesh_(mesh), members_(members) {
+  detail::UnionFind joined(static_cast<std::uint32_t>(members.size()));
+  for (std::uint32_t a = 0; a < members.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < members.size(); ++b) {
+      if (sites_.side_between(members[a], members[b]) != nullptr) joined.join(a, b);
+    }
+  }
+  std::vector<std::size_t> number(members.size(), members.size());
+  for (std::uint32_t a = 0; a < members.size(); ++a) {
+    std::size_t& own = number[joined.find(a)];
+    if (own == members.size()) {
+      own = groups_.size();
+      groups_.push_back({{}, members[a], {}, {}});
+    }
+    Group& group = groups_[own];
+    group.members.push_back(members[a]);
+    if (sites_[members[a]].kind > sites_[group.lead].kind) group.lead = members[a];
+  }
+  for (Group& group : groups_) add_planes(group);
+  find_slabs();
+}
+
+/// Marks one face of each slab after the first, if all slabs have the same width.
+void Contact::find_slabs() {
+  is_implied_.assign(groups_.size(), false);
+  if (bounds_.moved() != 0) return;  // the planes are then known only within rounding
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::array<std::array<std::size_t, 2>, 3> groups{};  // of each axis: groups that face against it, and along it
+  for (auto& pair : groups) pair = {none, none};
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const std::optional<AxisDirection> facing = axis_of(sites_[groups_[g].lead]);
+    if (facing && groups_[g].members.size() == 1) groups[facing->axis][facing->is_positive ? 1 : 0] = g;
+  }
+  const auto coordinate = [&](std::size_t group, std::size_t axis) {
+    return mesh_.vertices[sites_[groups_[group].lead].vertices[0]][axis];
+  };
+  std::optional<std::size_t> first;  // axis of the first slab
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& [above, below] = groups[axis];
+    if (above == none || below == none) continue;
+    if (!first) {
+      first = axis;
+      continue;
+    }
+    const auto& [other_above, other_below] = groups[*first];
+    const bool is_same = are_equal_sums(coordinate(above, axis), coordinate(other_below, *first),
+                                        coordinate(below, axis), coordinate(other_above, *first));
+    // The first group has no equation of its own.
+    if (is_same) is_implied_[above == 0 ? below : above] = true;
+  }
+}
+
+/// Returns the number of seams at a junction with slabs: that of the facets of the convex hull of all gradients. All
+/// distances are linear functions of those that the equations contain, exactly.
+std::size_t Contact::degree_of_slabs(const Vec3d& at) const {
+  std::vector<Vec3d> slopes;
+  for (const Group& group : groups_) {
+    if (group.members.size() != 1) return 0;
+    slopes.push_back(sites_.gradient(group.lead, at));
+  }
+  std::set<std::vector<std::size_t>> facets;
+  for (std::size_t a = 0; a < slopes.size(); ++a) {
+    for (std::size_t b = a + 1; b < slopes.size(); ++b) {
+      for (std::size_t c = b + 1; c < slopes.size(); ++c) {
+        const Vec3d across = cross(slopes[b] - slopes[a], slopes[c] - slopes[a]);
+        std::vector<std::size_t> on;
+        std::size_t above = 0, below = 0;
+        for (std::size_t k = 0; k < slopes.size(); ++k) {
+          // Only slopes of slabs lie in one plane, but for rounding.
+          constexpr double rounding = 1e-12, clear = 1e-6;
+          const double height = dot(across, slopes[k] - slopes[a]);
+          if (std::abs(height) <= rounding) {
+            on.push_back(k);
+          } else if (std::abs(height) < clear) {
+            return 0;
+          } else {
+            ++(height > 0 ? above : below);
+          }
+        }
+        if (above == 0 || below == 0) facets.insert(on);
+      }
+    }
+  }
+  return facets.size();
+}
+
+void Contact::add_planes(Group& group) const {
+  std::vector<Vec3d> basis;  // orthonormal
+  for (std::size_t a = 0; a < group.members.size(); ++a) {
+    for (std::size_t b = a + 1; b < group.members.size(); ++b) {
+      const DomainSide* side = sites_.side_between(group.members[a], group.members[b]);
+      if (side == nullptr) continue;
+      group.planes.push_back({side, group.members[a], group.members[b]});
+      Vec3d rest = side->normal;
+      for (const Vec3d& e : basis) rest -= e * dot(e, rest);
+      constexpr double dependent = 1e-6;
+      if (length(rest) < dependent) continue;
+      basis.push_back(unit(rest));
+      group.basis.push_back(group.planes.back());
+    }
+  }
+}
+
+std::size_t Contact::equation_count() const {
+  std::size_t count = groups_.size() - 1;
+  count -= static_cast<std::size_t>(std::count(is_implied_.begin(), is_implied_.end(), true));
+  for (const Group& group : groups_) count += group.basis.size();
+  return count;
+}
+
+std::size_t Contact::degree(const Vec3d& at) const {
+  if (equation_count() != 3) return 0;
+  if (std::find(is_implied_.begin(), is_implied_.end(), true) != is_implied_.end()) return degree_of_slabs(at);
+  for (const Group& group : groups_) {
+    // The curve of the group's own members ends here, and each member has a curve on the wall to the other group.
+    if (group.basis.size() == 2) return groups_.size() == 2 ? group.members.size() + 1 : 0;
+    if (group.basis.size() > 2 || group.members.size() != group.basis.size() + 1) return 0;
+  }
+  return 4;
+}
+
+bool Contact::is_at_vertex(std::uint32_t vertex) const {
+  return std::all_of(members_.begin(), members_.end(), [&](Index i) {
+    const std::vector<std::uint32_t>& own = sites_[i].vertices;
+    return std::binary_search(own.begin(), own.end(), vertex);
+  });
+}
+
+LinearBound Contact::distance(const Group& group, const Vec3d& x, double reach) const {
+  LinearBound out = bounds_.distance(group.lead, x, reach);
+  // On the other side of a plane, the distance is that of another member. Both have the same gradient in the plane.
+  for (const GroupPlane& plane : group.planes) {
+    const double height = plane.side->height(x);
+    if (height != 0) out.value.error += height * height * out.bend;
+  }
+  return out;
+}
+
+std::vector<LinearBound> Contact::equations(const Vec3d& x, double reach) const {
+  std::vector<LinearBound> out;
+  const LinearBound first = distance(groups_[0], x, reach);
+  for (std::size_t g = 1; g < groups_.size(); ++g) {
+    if (!is_implied_[g]) out.push_back(distance(groups_[g], x, reach) - first);
+  }
+  for (const Group& group : groups_) {
+    for (const GroupPlane& plane : group.basis) out.push_back(bounds_.height(*plane.side, plane.i, plane.k, x));
+  }
+  return out;
+}
+
+bool Contact::is_between_members(const Group& group, const DomainSide& side, double height) const {
+  constexpr double loose = 16;
+  if (std::abs(height) > loose * sites_.tolerance()) return false;
+  constexpr double parallel = 1e-9;
+  return std::any_of(group.planes.begin(), group.planes.end(), [&](const GroupPlane& plane) {
+    return length(cross(plane.side->normal, side.normal)) <= parallel;
+  });
+}
+
+bool Contact::is_inside_domain(const Group& group, Index i, const Tube& tube) const {
+  const TracedSite& site = sites_[i];
+  const double error = bounds_.corner_error() + bounds_.rounding();
+  if (site.kind != SiteKind::face) {
+    return std::all_of(site.sides.begin(), site.sides.end(), [&](const DomainSide& side) {
+      const double height = side.height(tube.centre);
+      if (is_between_members(group, side, height)) return true;
+      const LinearBound above = bounds_.height(side, i, i, tube.centre);
+      return height > tube.change(side.normal) + above.value.error + above.error_over(tube.reach());
+    });
+  }
+  // The foot moves at most as far as the point.
+  const double way = tube.reach() + error + bounds_.direction_error(i) * (tube.reach() + sites_.extent());
+  const Vec3d foot = sites_.foot(i, tube.centre);
+  if (sites_.outside(i, tube.centre) > (group.members.size() > 1 ? 16 * sites_.tolerance() : 0)) return false;
+  bool is_clear = true;
+  sites_.for_each_side(i, tube.centre, way, [&](const DomainSide& side) {
+    is_clear = is_clear && (distance_from(side.ends, foot) > way || is_between_members(group, side, side.height(foot)));
+  });
+  return is_clear;
+}
+
+bool Contact::are_inside_domains(const Tube& tube) const {
+  return std::all_of(groups_.begin(), groups_.end(), [&](const Group& group) {
+    return std::all_of(group.members.begin(), group.members.end(),
+                       [&](Index i) { return is_inside_domain(group, i, tube); });
+  });
+}
+
+bool Contact::is_part_of_member(std::uint32_t triangle) const {
+  const Triangle& corners = mesh_.triangles[triangle];
+  const auto has = [&](std::uint32_t v) { return std::find(corners.begin(), corners.end(), v) != corners.end(); };
+  return std::any_of(members_.begin(), members_.end(), [&](Index i) {
+    if (sites_[i].kind == SiteKind::face) return sites_.face_of(triangle) == i;
+    // Inside the domain of an edge or vertex, the closest point of an adjacent triangle is that of the edge or vertex.
+    const std::vector<std::uint32_t>& own = sites_[i].vertices;
+    return std::all_of(own.begin(), own.end(), has);
+  });
+}
+
+bool Contact::are_closest(const Tube& tube, const Bvh& border) const {
+  const double reach = tube.reach();
+  std::vector<LinearBound> own;
+  double largest = std::numeric_limits<double>::infinity();
+  for (const Group& group : groups_) {
+    own.push_back(distance(group, tube.centre, reach));
+    largest = std::min(largest, own.back().value.value + own.back().value.error);
+  }
+  const double error = bounds_.corner_error() + bounds_.rounding();
+  bool is_proven = true;
+  // Farther triangles stay farther: both distances change at most as much as the place.
+  border.for_each_within(tube.centre + sites_.origin(), largest + 2 * reach + 4 * error + bounds_.moved(),
+                         [&](const NearestPrimitive& found) {
+                           if (is_part_of_member(found.primitive)) return true;
+                           std::array<Vec3d, 3> corners;
+                           for (std::size_t k = 0; k < 3; ++k)
+                             corners[k] = sites_.vertices()[mesh_.triangles[found.primitive][k]];
+                           const Vec3d way = tube.centre - closest_point_on_triangle(tube.centre, corners);
+                           const double size = length(way);
+                           // The triangle lies behind the plane through its closest corner at right angles to `slope`.
+                           const Vec3d slope = size > 0 ? way / size : Vec3d{};
+                           double least = std::numeric_limits<double>::infinity();
+                           for (const Vec3d& corner : corners)
+                             least = std::min(least, dot(slope, tube.centre - corner));
+                           is_proven = std::any_of(own.begin(), own.end(), [&](const LinearBound& d) {
+                             const double most =
+                                 d.value.value + d.value.error + tube.change(slope - d.slope) + d.error_over(reach);
+                             return least - error > most;
+                           });
+                           return is_proven;
+                         });
+  return is_proven;
+}
+
+}  // namespace blum::voronoi

@@ -1,0 +1,90 @@
+// Blum: points with the same closest sites, as solutions of equations. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "voronoi/traced/proof/site_bounds.hpp"
+#include "voronoi/traced/traced_sites.hpp"
+
+namespace blum::voronoi {
+
+/// A cylinder, or a ball if its axis has no length.
+struct Tube {
+  Vec3d centre;
+  Vec3d along;        ///< unit vector along the axis
+  double half = 0;    ///< half the length of the axis
+  double radius = 0;  ///< of the cylinder; of the ball
+
+  /// Returns the largest distance of a point from the centre.
+  [[nodiscard]] double reach() const;
+  /// Returns the largest change of a linear function from its value at the centre.
+  [[nodiscard]] double change(const Vec3d& slope) const;
+};
+
+/// Sites that are closest to the points of a curve, or to one point. Sites with one footprint are one group, because
+/// their domains are side by side, and their distances are together one function with a continuous gradient.
+///
+/// Points with these closest sites are the solutions of equations: groups have the same distance, and points lie in the
+/// planes between the domains of a group. In general position, a curve has two equations, and a point three.
+///
+/// Faces at right angles to an axis that face each other make a slab. If slabs across several axes have exactly the
+/// same width, as in a square bar, one equation of each further slab follows from the others and is left out.
+class Contact {
+ public:
+  using Index = TracedSites::Index;
+
+  /// @param mesh     of the sites.
+  /// @param members  ascending.
+  Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vector<Index>& members);
+
+  [[nodiscard]] std::size_t equation_count() const;
+  /// Returns the equations near x as functions that are 0 at the solutions.
+  /// @param reach  bounds hold within this distance of x.
+  [[nodiscard]] std::vector<LinearBound> equations(const Vec3d& x, double reach) const;
+  /// Returns the number of curves that meet at a point with these closest sites in general position; 0 if it is
+  /// unknown.
+  /// @param at  the point.
+  [[nodiscard]] std::size_t degree(const Vec3d& at) const;
+  /// Returns true if a vertex of the mesh belongs to all members.
+  [[nodiscard]] bool is_at_vertex(std::uint32_t vertex) const;
+
+  /// Returns true if for all points of a tube, the closest points of the members' planes, lines and points belong to
+  /// the members, except where another member of the group follows.
+  [[nodiscard]] bool are_inside_domains(const Tube& tube) const;
+  /// Returns true if no other part of the border is closest to a point of a tube.
+  /// @param border  the triangles of the mesh.
+  [[nodiscard]] bool are_closest(const Tube& tube, const Bvh& border) const;
+
+ private:
+  struct GroupPlane {
+    const DomainSide* side;
+    Index i, k;  ///< sites on its two sides
+  };
+  struct Group {
+    std::vector<Index> members;
+    Index lead;                      ///< the smallest member: a vertex, otherwise an edge
+    std::vector<GroupPlane> planes;  ///< between members: all
+    std::vector<GroupPlane> basis;   ///< independent ones
+  };
+
+  void add_planes(Group& group) const;
+  void find_slabs();
+  [[nodiscard]] std::size_t degree_of_slabs(const Vec3d& at) const;
+  [[nodiscard]] LinearBound distance(const Group& group, const Vec3d& x, double reach) const;
+  [[nodiscard]] bool is_between_members(const Group& group, const DomainSide& side, double height) const;
+  [[nodiscard]] bool is_inside_domain(const Group& group, Index i, const Tube& tube) const;
+  [[nodiscard]] bool is_part_of_member(std::uint32_t triangle) const;
+
+  const SiteBounds& bounds_;
+  const TracedSites& sites_;
+  const MeshView& mesh_;
+  std::vector<Index> members_;
+  std::vector<Group> groups_;
+  std::vector<bool> is_implied_;  ///< for each group: the others imply its equation
+};
+
+}  // namespace blum::voronoi
