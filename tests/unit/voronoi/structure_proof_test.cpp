@@ -207,6 +207,36 @@ TEST(StructureProof, NamesPlacesOfNearlySquareEnds) {
   }
 }
 
+/// Returns a T whose stem is moved sideways.
+TriangleMesh tee(double moved) {
+  const std::vector<Point2> outline{
+      {-2, 0}, {2, 0}, {2, 1}, {0.3 + moved, 1}, {0.3 + moved, 3}, {-0.3 + moved, 3}, {-0.3 + moved, 1}, {-2, 1}};
+  return make_extrusion(outline, {}, {.thickness = 1.7});
+}
+
+/// Both faces of the stem have a reflex edge at the same height, so the sides of four domains meet in a seam.
+TEST(StructureProof, OfAMirroredStemIsComplete) {
+  for (const double moved : {0.0, 0.5}) {
+    const VoronoiReport report = report_of(tee(moved));
+    EXPECT_EQ(report.proven_seams, report.seams);
+    EXPECT_EQ(report.proven_junctions, report.junctions);
+    for (const OpenVoronoiPlace& place : report.open) {
+      ADD_FAILURE() << "open at " << place.position.x << ", " << place.position.y << ", " << place.position.z << ", "
+                    << place.sites.size() << " sites, doubt " << static_cast<int>(place.doubt);
+    }
+  }
+}
+
+/// One corner of the stem is higher by one bit, so the stem has no mirror.
+TEST(StructureProof, LeavesANearlyMirroredStemOpen) {
+  TriangleMesh mesh = tee(0);
+  for (Vec3d& p : mesh.vertices) {
+    if (p.x == 0.3 && p.y == 1) p.y = std::nextafter(1, 2);
+  }
+  const VoronoiReport report = report_of(mesh);
+  EXPECT_LT(report.proven_seams, report.seams);
+}
+
 /// Turned by an angle, the same bar has no exact widths.
 TEST(StructureProof, LeavesTurnedSquareEndsOpen) {
   const VoronoiReport report = report_of(test::turned(notched_bar(1)));

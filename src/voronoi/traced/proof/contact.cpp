@@ -11,6 +11,7 @@
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/closest_point.hpp"
 #include "voronoi/label_geometry.hpp"
+#include "voronoi/traced/proof/implied_equations.hpp"
 
 namespace blum::voronoi {
 namespace {
@@ -22,31 +23,6 @@ LinearBound operator-(const LinearBound& a, const LinearBound& b) {
           a.slope - b.slope,
           a.turned + b.turned,
           a.bend + b.bend};
-}
-
-/// An axis, and one of its two directions.
-struct AxisDirection {
-  std::size_t axis;
-  bool is_positive;
-};
-
-/// Returns the axis at right angles to a face, if there is one.
-std::optional<AxisDirection> axis_of(const TracedSite& site) {
-  if (site.kind != SiteKind::face) return std::nullopt;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::abs(site.direction[axis]) == 1) return AxisDirection{axis, site.direction[axis] > 0};
-  }
-  return std::nullopt;
-}
-
-/// Returns true if a + b = c + d, exactly.
-bool are_equal_sums(double a, double b, double c, double d) {
-  // The rounding error of a sum is a double (Knuth 1969).
-  const auto exact_sum = [](double x, double y) {
-    const double sum = x + y, part = sum - x;
-    return std::pair{sum, (x - (sum - part)) + (y - part)};
-  };
-  return exact_sum(a, b) == exact_sum(c, d);
 }
 
 /// Returns the distance of a point from a segment.
@@ -87,71 +63,11 @@ Contact::Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vect
     if (sites_[members[a]].kind > sites_[group.lead].kind) group.lead = members[a];
   }
   for (Group& group : groups_) add_planes(group);
-  find_slabs();
-}
-
-/// Marks one face of each slab after the first, if all slabs have the same width.
-void Contact::find_slabs() {
-  is_implied_.assign(groups_.size(), false);
-  if (bounds_.moved() != 0) return;  // the planes are then known only within rounding
-  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::array<std::array<std::size_t, 2>, 3> groups{};  // of each axis: groups that face against it, and along it
-  for (auto& pair : groups) pair = {none, none};
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const std::optional<AxisDirection> facing = axis_of(sites_[groups_[g].lead]);
-    if (facing && groups_[g].members.size() == 1) groups[facing->axis][facing->is_positive ? 1 : 0] = g;
-  }
-  const auto coordinate = [&](std::size_t group, std::size_t axis) {
-    return mesh_.vertices[sites_[groups_[group].lead].vertices[0]][axis];
-  };
-  std::optional<std::size_t> first;  // axis of the first slab
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto& [above, below] = groups[axis];
-    if (above == none || below == none) continue;
-    if (!first) {
-      first = axis;
-      continue;
-    }
-    const auto& [other_above, other_below] = groups[*first];
-    const bool is_same = are_equal_sums(coordinate(above, axis), coordinate(other_below, *first),
-                                        coordinate(below, axis), coordinate(other_above, *first));
-    // The first group has no equation of its own.
-    if (is_same) is_implied_[above == 0 ? below : above] = true;
-  }
-}
-
-/// Returns the number of seams at a junction with slabs: that of the facets of the convex hull of all gradients. All
-/// distances are linear functions of those that the equations contain, exactly.
-std::size_t Contact::degree_of_slabs(const Vec3d& at) const {
-  std::vector<Vec3d> slopes;
-  for (const Group& group : groups_) {
-    if (group.members.size() != 1) return 0;
-    slopes.push_back(sites_.gradient(group.lead, at));
-  }
-  std::set<std::vector<std::size_t>> facets;
-  for (std::size_t a = 0; a < slopes.size(); ++a) {
-    for (std::size_t b = a + 1; b < slopes.size(); ++b) {
-      for (std::size_t c = b + 1; c < slopes.size(); ++c) {
-        const Vec3d across = cross(slopes[b] - slopes[a], slopes[c] - slopes[a]);
-        std::vector<std::size_t> on;
-        std::size_t above = 0, below = 0;
-        for (std::size_t k = 0; k < slopes.size(); ++k) {
-          // Only slopes of slabs lie in one plane, but for rounding.
-          constexpr double rounding = 1e-12, clear = 1e-6;
-          const double height = dot(across, slopes[k] - slopes[a]);
-          if (std::abs(height) <= rounding) {
-            on.push_back(k);
-          } else if (std::abs(height) < clear) {
-            return 0;
-          } else {
-            ++(height > 0 ? above : below);
-          }
-        }
-        if (above == 0 || below == 0) facets.insert(on);
-      }
-    }
-  }
-  return facets.size();
+  std::vector<std::vector<Index>> groups;
+  for (const Group& group : groups_) groups.push_back(group.members);
+  implied_.distance.assign(groups.size(), false);
+  implied_.planes.assign(groups.size(), false);
+  if (bounds_.are_corners_exact()) implied_ = implied_equations(sites_, mesh, groups);
 }
 
 void Contact::add_planes(Group& group) const {
@@ -172,21 +88,83 @@ void Contact::add_planes(Group& group) const {
 }
 
 std::size_t Contact::equation_count() const {
-  std::size_t count = groups_.size() - 1;
-  count -= static_cast<std::size_t>(std::count(is_implied_.begin(), is_implied_.end(), true));
-  for (const Group& group : groups_) count += group.basis.size();
+  std::size_t count = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    if (g > 0 && !implied_.distance[g]) ++count;
+    if (!implied_.planes[g]) count += groups_[g].basis.size();
+  }
   return count;
 }
 
 std::size_t Contact::degree(const Vec3d& at) const {
   if (equation_count() != 3) return 0;
-  if (std::find(is_implied_.begin(), is_implied_.end(), true) != is_implied_.end()) return degree_of_slabs(at);
+  if (implied_.mirrors == 1 && !implied_.has_slabs) return degree_in_mirror();
+  if (implied_.is_any()) return degree_of_symmetric(at);
   for (const Group& group : groups_) {
     // The curve of the group's own members ends here, and each member has a curve on the wall to the other group.
     if (group.basis.size() == 2) return groups_.size() == 2 ? group.members.size() + 1 : 0;
     if (group.basis.size() > 2 || group.members.size() != group.basis.size() + 1) return 0;
   }
   return 4;
+}
+
+/// Returns the number of seams at a junction in a mirror. On each side, the groups of this side have one seam. Their
+/// walls meet the mirror in seams, unless both sites are their own images.
+std::size_t Contact::degree_in_mirror() const {
+  std::vector<std::size_t> half;  // groups of one side, and of the mirror
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    if (implied_.image[g] >= g) half.push_back(g);
+  }
+  std::size_t equations = half.size() - 1;
+  for (const std::size_t g : half) equations += groups_[g].basis.size();
+  if (equations != 2) return 0;
+  const auto is_own_image = [&](std::size_t g) { return implied_.image[g] == g; };
+  std::size_t seams = 2;
+  if (half.size() == 1) return seams + groups_[half[0]].members.size();
+  for (std::size_t a = 0; a < half.size(); ++a) {
+    // A group with a plane has two members, and the wall between them.
+    const std::size_t own = groups_[half[a]].members.size();
+    if (own > 2) return 0;
+    if (own == 2 && !is_own_image(half[a])) ++seams;
+    for (std::size_t b = a + 1; b < half.size(); ++b) {
+      if (!is_own_image(half[a]) || !is_own_image(half[b])) seams += own * groups_[half[b]].members.size();
+    }
+  }
+  return seams;
+}
+
+/// Returns the number of seams at a junction with implied equations: that of the facets of the convex hull of all
+/// gradients.
+std::size_t Contact::degree_of_symmetric(const Vec3d& at) const {
+  std::vector<Vec3d> slopes;
+  for (const Group& group : groups_) {
+    if (group.members.size() != 1) return 0;
+    slopes.push_back(sites_.gradient(group.lead, at));
+  }
+  std::set<std::vector<std::size_t>> facets;
+  for (std::size_t a = 0; a < slopes.size(); ++a) {
+    for (std::size_t b = a + 1; b < slopes.size(); ++b) {
+      for (std::size_t c = b + 1; c < slopes.size(); ++c) {
+        const Vec3d across = cross(slopes[b] - slopes[a], slopes[c] - slopes[a]);
+        std::vector<std::size_t> on;
+        std::size_t above = 0, below = 0;
+        for (std::size_t k = 0; k < slopes.size(); ++k) {
+          // Only slopes of implied equations lie in one plane with others, but for rounding.
+          constexpr double rounding = 1e-12, clear = 1e-6;
+          const double height = dot(across, slopes[k] - slopes[a]);
+          if (std::abs(height) <= rounding) {
+            on.push_back(k);
+          } else if (std::abs(height) < clear) {
+            return 0;
+          } else {
+            ++(height > 0 ? above : below);
+          }
+        }
+        if (above == 0 || below == 0) facets.insert(on);
+      }
+    }
+  }
+  return facets.size();
 }
 
 bool Contact::is_at_vertex(std::uint32_t vertex) const {
@@ -210,10 +188,13 @@ std::vector<LinearBound> Contact::equations(const Vec3d& x, double reach) const 
   std::vector<LinearBound> out;
   const LinearBound first = distance(groups_[0], x, reach);
   for (std::size_t g = 1; g < groups_.size(); ++g) {
-    if (!is_implied_[g]) out.push_back(distance(groups_[g], x, reach) - first);
+    if (!implied_.distance[g]) out.push_back(distance(groups_[g], x, reach) - first);
   }
-  for (const Group& group : groups_) {
-    for (const GroupPlane& plane : group.basis) out.push_back(bounds_.height(*plane.side, plane.i, plane.k, x));
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    if (implied_.planes[g]) continue;
+    for (const GroupPlane& plane : groups_[g].basis) {
+      out.push_back(bounds_.height(*plane.side, plane.i, plane.k, x));
+    }
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "voronoi/traced/proof/implied_equations.hpp"
 #include "voronoi/traced/proof/site_bounds.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 
@@ -31,8 +32,7 @@ struct Tube {
 /// Points with these closest sites are the solutions of equations: groups have the same distance, and points lie in the
 /// planes between the domains of a group. In general position, a curve has two equations, and a point three.
 ///
-/// Faces at right angles to an axis that face each other make a slab. If slabs across several axes have exactly the
-/// same width, as in a square bar, one equation of each further slab follows from the others and is left out.
+/// In symmetric solids, some equations follow from the others, exactly, and are left out (implied_equations()).
 class Contact {
  public:
   using Index = TracedSites::Index;
@@ -72,8 +72,8 @@ class Contact {
   };
 
   void add_planes(Group& group) const;
-  void find_slabs();
-  [[nodiscard]] std::size_t degree_of_slabs(const Vec3d& at) const;
+  [[nodiscard]] std::size_t degree_in_mirror() const;
+  [[nodiscard]] std::size_t degree_of_symmetric(const Vec3d& at) const;
   [[nodiscard]] LinearBound distance(const Group& group, const Vec3d& x, double reach) const;
   [[nodiscard]] bool is_between_members(const Group& group, const DomainSide& side, double height) const;
   [[nodiscard]] bool is_inside_domain(const Group& group, Index i, const Tube& tube) const;
@@ -84,7 +84,7 @@ class Contact {
   const MeshView& mesh_;
   std::vector<Index> members_;
   std::vector<Group> groups_;
-  std::vector<bool> is_implied_;  ///< for each group: the others imply its equation
+  ImpliedEquations implied_;
 };
 
 }  // namespace blum::voronoi

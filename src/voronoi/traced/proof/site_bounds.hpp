@@ -43,6 +43,8 @@ class SiteBounds {
   [[nodiscard]] double corner_error() const { return corner_error_; }
   /// Returns the largest distance of a site's vertex from that of the mesh, in mesh units.
   [[nodiscard]] double moved() const { return moved_; }
+  /// Returns true if no corner was moved, and all faces are flat as given, but for rounding.
+  [[nodiscard]] bool are_corners_exact() const { return moved_ == 0 && corner_error_ <= 4 * rounding_; }
   /// Returns a bound on the rounding error of a distance, in mesh units.
   [[nodiscard]] double rounding() const { return rounding_; }
 

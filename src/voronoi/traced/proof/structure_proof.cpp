@@ -25,6 +25,7 @@ using Junction = TracedStructure::Junction;
 /// Seams leave the ball of a proven junction at this share of its radius. Points up to there are on the seam that ends
 /// at the junction, as the proof in docs/theory/voronoi.md shows.
 constexpr double share_of_ball = 0.3;
+constexpr std::size_t most_halvings_of_seam = 4000;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Values and slopes of equations, with bounds on their errors.
@@ -242,8 +243,9 @@ class Prover {
       }
       std::reverse(points.begin(), points.end());
     }
+    std::size_t budget = most_halvings_of_seam;
     for (std::size_t k = 1; k < points.size(); ++k) {
-      if (const auto piece = open_part(tracer, curve, contact, points[k - 1], points[k], 0)) {
+      if (const auto piece = open_part(tracer, curve, contact, points[k - 1], points[k], budget)) {
         return open(piece->a, piece->b, VoronoiDoubt::close);
       }
     }
@@ -283,7 +285,7 @@ class Prover {
     if (!contact.is_at_vertex(vertex)) return false;
     constexpr int most_halvings = 20;
     for (int h = 0; h < most_halvings; ++h, section.radius *= 0.5) {
-      if (has_one_curve(contact, section) && contact.are_inside_domains(section) &&
+      if (distance_from_axis(contact, section) && contact.are_inside_domains(section) &&
           contact.are_closest(section, tree_)) {
         return true;
       }
@@ -291,39 +293,52 @@ class Prover {
     return false;
   }
 
-  /// Returns true if each section of a tube contains exactly one point with these closest sites.
-  [[nodiscard]] static bool has_one_curve(const Contact& contact, const Tube& tube) {
+  /// Returns a bound on the distance of the points with these closest sites from a tube's axis, if each section of the
+  /// tube contains exactly one. Otherwise returns nothing.
+  [[nodiscard]] static std::optional<double> distance_from_axis(const Contact& contact, const Tube& tube) {
     const double reach = tube.reach();
     const std::vector<LinearBound> f = contact.equations(tube.centre, reach);
     const Inverse inverse = inverse_across(f, tube.along);
     const double turn = inverse.norm * errors_of(f, reach).slope;
-    if (!(turn < 0.5)) return false;
+    if (!(turn < 0.5)) return std::nullopt;
     const std::array values{f[0].value.value, f[1].value.value};
     const std::array along{dot(f[0].slope, tube.along), dot(f[1].slope, tube.along)};
     const double away = length(inverse.times(values)) + length(inverse.times(along)) * tube.half +
                         inverse.norm * errors_of(f, tube.half).value;
-    return away <= (1 - turn) * tube.radius;
+    return away <= (1 - turn) * tube.radius ? std::optional(away / (1 - turn)) : std::nullopt;
+  }
+
+  /// Returns the narrowest tube around a piece that the bounds allow.
+  [[nodiscard]] std::optional<Tube> tube_around(const Contact& contact, const Vec3d& a, const Vec3d& b) const {
+    const double size = length(b - a);
+    // The ends overlap those of the next pieces.
+    constexpr double width = 0.1;
+    Tube tube{(a + b) * 0.5, (b - a) / size, (0.5 + width) * size, width * size};
+    const std::optional<double> away = distance_from_axis(contact, tube);
+    if (!away) return std::nullopt;
+    tube.radius = std::min(tube.radius, std::max(2 * *away, open_radius()));
+    return distance_from_axis(contact, tube) ? std::optional(tube) : std::nullopt;
   }
 
   /// Returns the first part of a piece that is not proven.
+  /// @param budget  how often pieces may be halved.
   [[nodiscard]] std::optional<Piece> open_part(const SeamTracer& tracer, const Curve& curve, const Contact& contact,
-                                               const Vec3d& a, const Vec3d& b, int depth) const {
-    const Vec3d step = b - a;
-    const double size = length(step);
+                                               const Vec3d& a, const Vec3d& b, std::size_t& budget) const {
+    const double size = length(b - a);
     if (!(size > 0)) return std::nullopt;
-    constexpr double width = 0.1;
-    // The ends overlap those of the next pieces.
-    const Tube tube{(a + b) * 0.5, step / size, (0.5 + width) * size, width * size};
-    if (has_one_curve(contact, tube) && is_at_ends(contact, tube, a, b) && contact.are_inside_domains(tube) &&
-        contact.are_closest(tube, tree_)) {
+    const std::optional<Tube> tube = tube_around(contact, a, b);
+    if (tube && is_at_ends(contact, *tube, a, b) && contact.are_inside_domains(*tube) &&
+        contact.are_closest(*tube, tree_)) {
       return std::nullopt;
     }
-    constexpr int most_depth = 40;
-    const auto middle = tracer.point_in_plane(curve.curve, tube.centre, tube.along);
+    const Vec3d centre = (a + b) * 0.5;
     const bool is_small = size <= 64 * std::max(sites_.tolerance(), bounds_.corner_error());
-    if (depth == most_depth || is_small || !middle || !(length(*middle - tube.centre) < 0.5 * size)) return Piece{a, b};
-    if (const auto open = open_part(tracer, curve, contact, a, *middle, depth + 1)) return open;
-    return open_part(tracer, curve, contact, *middle, b, depth + 1);
+    if (is_small || budget == 0) return Piece{a, b};
+    --budget;
+    const auto middle = tracer.point_in_plane(curve.curve, centre, (b - a) / size);
+    if (!middle || !(length(*middle - centre) < 0.5 * size)) return Piece{a, b};
+    if (const auto open = open_part(tracer, curve, contact, a, *middle, budget)) return open;
+    return open_part(tracer, curve, contact, *middle, b, budget);
   }
 
   /// Returns true if the curve in a tube passes close to both ends of its axis. Then the curves of successive tubes are
