@@ -207,7 +207,9 @@ struct VoronoiReport {
   /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
   /// diagram of the polyhedron whose corners have moved by at most `moved` so that its faces are flat.
   bool proven = false;
-  double moved = 0;  ///< If traced: largest distance by which a corner was moved, mesh units.
+  /// If traced: bound on the distance by which corners move so that faces are flat, mesh units. 0 if they are flat as
+  /// given, but for rounding.
+  double moved = 0;
   /// If traced: junctions inside the solid, and seams, of the whole diagram.
   std::size_t junctions = 0;
   std::size_t seams = 0;
@@ -272,7 +274,7 @@ struct Description<VoronoiReport> {
       Member{"proven", &VoronoiReport::proven, "",
              "true if traced, and each sheet, seam and junction is proven to be that of the exact diagram"},
       Member{"moved", &VoronoiReport::moved, "mesh units",
-             "if traced: largest distance by which a corner was moved so that faces are flat"},
+             "if traced: bound on the distance by which corners move so that faces are flat"},
       Member{"junctions", &VoronoiReport::junctions, "", "if traced: junctions of the whole diagram inside the solid"},
       Member{"seams", &VoronoiReport::seams, "", "if traced: seams of the whole diagram"},
       Member{"proven_junctions", &VoronoiReport::proven_junctions, "",

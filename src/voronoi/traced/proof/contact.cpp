@@ -199,12 +199,25 @@ std::vector<LinearBound> Contact::equations(const Vec3d& x, double reach) const 
   return out;
 }
 
-bool Contact::is_between_members(const Group& group, const DomainSide& side, double height) const {
+bool Contact::is_between_members(const Group& group, Index i, const DomainSide& side, double height) const {
   constexpr double loose = 16;
   if (std::abs(height) > loose * sites_.tolerance()) return false;
   constexpr double parallel = 1e-9;
-  return std::any_of(group.planes.begin(), group.planes.end(), [&](const GroupPlane& plane) {
+  const bool is_plane = std::any_of(group.planes.begin(), group.planes.end(), [&](const GroupPlane& plane) {
     return length(cross(plane.side->normal, side.normal)) <= parallel;
+  });
+  return is_plane || is_end_of_two(group, i, side);
+}
+
+/// Returns true if a side is the end of an edge at which another edge of the group starts. Below such a vertex of a
+/// face, with an angle above 180 degrees, both edges and the face share a footprint.
+bool Contact::is_end_of_two(const Group& group, Index i, const DomainSide& side) const {
+  if (sites_[i].kind != SiteKind::edge) return false;
+  const auto is_at_end = [&](std::uint32_t v) { return sites_.vertices()[v] == side.ends[0]; };
+  return std::any_of(group.members.begin(), group.members.end(), [&](Index k) {
+    const std::vector<std::uint32_t>& own = sites_[k].vertices;
+    return k != i && sites_[k].kind == SiteKind::edge && std::any_of(own.begin(), own.end(), is_at_end) &&
+           std::abs(dot(side.normal, sites_[i].direction)) > 0.5;
   });
 }
 
@@ -214,7 +227,7 @@ bool Contact::is_inside_domain(const Group& group, Index i, const Tube& tube) co
   if (site.kind != SiteKind::face) {
     return std::all_of(site.sides.begin(), site.sides.end(), [&](const DomainSide& side) {
       const double height = side.height(tube.centre);
-      if (is_between_members(group, side, height)) return true;
+      if (is_between_members(group, i, side, height)) return true;
       const LinearBound above = bounds_.height(side, i, i, tube.centre);
       return height > tube.change(side.normal) + above.value.error + above.error_over(tube.reach());
     });
@@ -225,7 +238,8 @@ bool Contact::is_inside_domain(const Group& group, Index i, const Tube& tube) co
   if (sites_.outside(i, tube.centre) > (group.members.size() > 1 ? 16 * sites_.tolerance() : 0)) return false;
   bool is_clear = true;
   sites_.for_each_side(i, tube.centre, way, [&](const DomainSide& side) {
-    is_clear = is_clear && (distance_from(side.ends, foot) > way || is_between_members(group, side, side.height(foot)));
+    is_clear =
+        is_clear && (distance_from(side.ends, foot) > way || is_between_members(group, i, side, side.height(foot)));
   });
   return is_clear;
 }
@@ -237,14 +251,24 @@ bool Contact::are_inside_domains(const Tube& tube) const {
   });
 }
 
+/// Returns true if no point of a triangle is closer than the members, for points inside their domains.
 bool Contact::is_part_of_member(std::uint32_t triangle) const {
   const Triangle& corners = mesh_.triangles[triangle];
-  const auto has = [&](std::uint32_t v) { return std::find(corners.begin(), corners.end(), v) != corners.end(); };
+  const Index face = sites_.face_of(triangle);
   return std::any_of(members_.begin(), members_.end(), [&](Index i) {
-    if (sites_[i].kind == SiteKind::face) return sites_.face_of(triangle) == i;
-    // Inside the domain of an edge or vertex, the closest point of an adjacent triangle is that of the edge or vertex.
-    const std::vector<std::uint32_t>& own = sites_[i].vertices;
-    return std::all_of(own.begin(), own.end(), has);
+    const TracedSite& site = sites_[i];
+    if (site.kind == SiteKind::face) return face == i;
+    if (site.kind == SiteKind::vertex)
+      return std::find(corners.begin(), corners.end(), site.vertices[0]) != corners.end();
+    // A triangle of an adjacent face may lie beyond the edge as seen from the domain. Then the line is closer.
+    const BorderEdge& edge = sites_.edges()[site.border];
+    for (const std::size_t k : {0U, 1U}) {
+      if (edge.faces[k] != face) continue;
+      return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+        return site.sides[k].height(sites_.vertices()[v]) <= bounds_.corner_error();
+      });
+    }
+    return false;
   });
 }
 

@@ -75,7 +75,8 @@ class Contact {
   [[nodiscard]] std::size_t degree_in_mirror() const;
   [[nodiscard]] std::size_t degree_of_symmetric(const Vec3d& at) const;
   [[nodiscard]] LinearBound distance(const Group& group, const Vec3d& x, double reach) const;
-  [[nodiscard]] bool is_between_members(const Group& group, const DomainSide& side, double height) const;
+  [[nodiscard]] bool is_between_members(const Group& group, Index i, const DomainSide& side, double height) const;
+  [[nodiscard]] bool is_end_of_two(const Group& group, Index i, const DomainSide& side) const;
   [[nodiscard]] bool is_inside_domain(const Group& group, Index i, const Tube& tube) const;
   [[nodiscard]] bool is_part_of_member(std::uint32_t triangle) const;
 

@@ -104,7 +104,7 @@ class Prover {
   }
 
   StructureProof prove() {
-    out_.moved = bounds_.moved();
+    out_.moved = bounds_.are_corners_exact() ? 0 : bounds_.moved() + bounds_.corner_error();
     count_ends();
     prove_junctions();
     prove_seams();
