@@ -43,7 +43,7 @@ double Tube::change(const Vec3d& slope) const {
   return half * axial + radius * length(half > 0 ? slope - along * dot(slope, along) : slope);
 }
 
-Contact::Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vector<Index>& members)
+Contact::Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vector<Index>& members, std::size_t wanted)
     : bounds_(bounds), sites_(bounds.sites()), mesh_(mesh), members_(members) {
   detail::UnionFind joined(static_cast<std::uint32_t>(members.size()));
   for (std::uint32_t a = 0; a < members.size(); ++a) {
@@ -67,7 +67,7 @@ Contact::Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vect
   for (const Group& group : groups_) groups.push_back(group.members);
   implied_.distance.assign(groups.size(), false);
   implied_.planes.assign(groups.size(), false);
-  if (bounds_.are_corners_exact()) implied_ = implied_equations(sites_, mesh, groups);
+  if (equation_count() > wanted && bounds_.are_corners_exact()) implied_ = implied_equations(sites_, mesh, groups);
 }
 
 void Contact::add_planes(Group& group) const {

@@ -39,7 +39,9 @@ class Contact {
 
   /// @param mesh     of the sites.
   /// @param members  ascending.
-  Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vector<Index>& members);
+  /// @param wanted   number of equations in general position: 2 for a curve, 3 for a point. If there are more, implied
+  ///                 ones are looked for.
+  Contact(const SiteBounds& bounds, const MeshView& mesh, const std::vector<Index>& members, std::size_t wanted);
 
   [[nodiscard]] std::size_t equation_count() const;
   /// Returns the equations near x as functions that are 0 at the solutions.

@@ -20,6 +20,24 @@ ExactSum exact_sum(double a, double b) {
   return {sum, (a - (sum - part)) + (b - part)};
 }
 
+/// A reflection that maps coordinates to coordinates: across an axis, or across a plane x_a - sign x_b = const.
+struct Mirror {
+  std::size_t a, b;  ///< axes; the same for a reflection across an axis
+  double sign;       ///< -1 for a reflection across an axis
+
+  /// Returns the constant for which q is the image of p, if there is one.
+  [[nodiscard]] std::optional<ExactSum> between(const Vec3d& p, const Vec3d& q) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k != a && k != b && p[k] != q[k]) return std::nullopt;
+    }
+    const ExactSum offset = exact_sum(q[a], -sign * p[b]);
+    return offset == exact_sum(p[a], -sign * q[b]) ? std::optional(offset) : std::nullopt;
+  }
+};
+
+constexpr std::array<Mirror, 9> mirrors{
+    {{0, 0, -1}, {1, 1, -1}, {2, 2, -1}, {0, 1, 1}, {0, 1, -1}, {1, 2, 1}, {1, 2, -1}, {2, 0, 1}, {2, 0, -1}}};
+
 class Symmetry {
  public:
   Symmetry(const TracedSites& traced, const MeshView& mesh, const std::vector<std::vector<Index>>& groups)
@@ -31,7 +49,7 @@ class Symmetry {
 
   ImpliedEquations find() {
     find_slabs();
-    for (std::size_t axis = 0; axis < 3; ++axis) find_mirrored(axis);
+    for (const Mirror& mirror : mirrors) find_mirrored(mirror);
     return std::move(out_);
   }
 
@@ -101,51 +119,47 @@ class Symmetry {
   }
 
   /// Returns true if corners of a site are mirrored corners of another one.
-  /// @param mirror  twice the place of the mirror; set by the first corner.
-  [[nodiscard]] bool is_image(const TracedSite& site, const TracedSite& other, std::size_t axis,
-                              std::optional<ExactSum>& mirror) const {
+  /// @param offset  of the mirror; set by the first corner.
+  [[nodiscard]] bool is_image(const TracedSite& site, const TracedSite& other, const Mirror& mirror,
+                              std::optional<ExactSum>& offset) const {
     if (site.kind != other.kind) return false;
     const std::vector<std::uint32_t> corners = corners_of(site);
     return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-      const Vec3d& p = mesh_.vertices[v];
       return std::any_of(other.vertices.begin(), other.vertices.end(), [&](std::uint32_t w) {
-        const Vec3d& q = mesh_.vertices[w];
-        for (std::size_t k = 0; k < 3; ++k) {
-          if (k != axis && p[k] != q[k]) return false;
-        }
-        const ExactSum sum = exact_sum(p[axis], q[axis]);
-        if (!mirror) mirror = sum;
-        return sum == *mirror;
+        const std::optional<ExactSum> own = mirror.between(mesh_.vertices[v], mesh_.vertices[w]);
+        if (!own) return false;
+        if (!offset) offset = own;
+        return *own == *offset;
       });
     });
   }
 
-  /// Returns twice the place of the mirror across an axis for which one group is the image of another.
-  [[nodiscard]] std::optional<ExactSum> mirror_between(std::size_t a, std::size_t b, std::size_t axis) const {
+  /// Returns the offset of a mirror for which one group is the image of another.
+  [[nodiscard]] std::optional<ExactSum> offset_between(std::size_t a, std::size_t b, const Mirror& mirror) const {
     if (groups_[a].size() != groups_[b].size()) return std::nullopt;
-    std::optional<ExactSum> mirror;
+    std::optional<ExactSum> offset;
     for (const Index i : groups_[a]) {
       const bool has_image = std::any_of(groups_[b].begin(), groups_[b].end(), [&](Index k) {
-        std::optional<ExactSum> own = mirror;
-        if (!is_image(traced_[i], traced_[k], axis, own)) return false;
-        mirror = own;
+        std::optional<ExactSum> own = offset;
+        if (!is_image(traced_[i], traced_[k], mirror, own)) return false;
+        offset = own;
         return true;
       });
       if (!has_image) return std::nullopt;
     }
-    return mirror;
+    return offset;
   }
 
-  void find_mirrored(std::size_t axis) {
+  void find_mirrored(const Mirror& mirror) {
     std::optional<ExactSum> first;
     bool is_used = false;
     for (std::size_t a = 0; a < groups_.size(); ++a) {
       for (std::size_t b = a + 1; b < groups_.size(); ++b) {
-        const std::optional<ExactSum> mirror = mirror_between(a, b, axis);
-        if (!mirror || (first && *mirror != *first)) continue;
+        const std::optional<ExactSum> offset = offset_between(a, b, mirror);
+        if (!offset || (first && *offset != *first)) continue;
         if (!first) {
           if (out_.distance[a] || out_.distance[b]) continue;
-          first = mirror;
+          first = offset;
           is_kept_[a] = is_kept_[b] = true;
         } else if (!imply_one_of(a, b)) {
           continue;

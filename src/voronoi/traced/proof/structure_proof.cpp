@@ -150,7 +150,7 @@ class Prover {
   /// Returns the largest ball around a junction for which the proof succeeds.
   [[nodiscard]] KnownBall ball_at(std::size_t k, VoronoiDoubt& doubt) const {
     const Junction& junction = structure_.junctions[k];
-    const Contact contact(bounds_, mesh_, junction.sites);
+    const Contact contact(bounds_, mesh_, junction.sites, 3);
     const KnownBall open{open_radius(), false};
     doubt = VoronoiDoubt::degenerate;
     if (contact.equation_count() == 2 && ends_[k] == 2) return {0, true, true};
@@ -227,7 +227,7 @@ class Prover {
   /// Returns the first piece of a seam that is not proven.
   [[nodiscard]] std::optional<OpenPlace> open_piece_of(const Curve& curve) const {
     const std::vector<Index>& own = curve.curve.sites;
-    const Contact contact(bounds_, mesh_, own);
+    const Contact contact(bounds_, mesh_, own, 2);
     const auto open = [&](const Vec3d& a, const Vec3d& b, VoronoiDoubt doubt) {
       return OpenPlace{(a + b) * 0.5, std::max(length(b - a), open_radius()), own, doubt};
     };
