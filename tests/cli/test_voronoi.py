@@ -164,6 +164,8 @@ def test_a_bracket_as_text(parts, tmp_path):
         "site)"
     )
     assert {"sites", "traced", "complex", "certified", "time"} <= set(rows)
+    assert rows["proven"] == "314 of 314 junctions, 919 of 919 seams"
+    assert rows["certified"] == "yes: each wall, seam and junction is that of the exact diagram"
     text, _ = run("voronoi", parts / "bracket.ply", "--method", "cubes", "-o", tmp_path / "b.vtp", "--verbose")
     rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
     assert {"sites", "cubes", "lines", "complex", "certified", "time"} <= set(rows)
