@@ -165,7 +165,7 @@ struct Description<VoronoiDoubt> {
 /// Junction, or piece of a seam, of a traced diagram that is not proven.
 struct OpenVoronoiPlace {
   Vec3d position{};                  ///< Mesh units.
-  double size = 0;                   ///< Of the place: outside, all is proven. Mesh units.
+  double size = 0;                   ///< Outside, all is proven. Mesh units.
   std::vector<std::uint32_t> sites;  ///< Closest sites, as in VoronoiComplex::complex, ascending.
   VoronoiDoubt doubt = VoronoiDoubt::close;
 };
@@ -205,9 +205,9 @@ struct VoronoiReport {
   /// between vertices, mesh units.
   double chord = 0;
   /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
-  /// diagram of the polyhedron whose corners have moved by at most `moved` so that its faces are flat.
+  /// diagram of a flat polyhedron. Its corners are within `moved` of those of the mesh.
   bool proven = false;
-  /// If traced: bound on the distance by which corners move so that faces are flat, mesh units. 0 if they are flat as
+  /// If traced: largest move of a corner that makes the faces flat, mesh units. 0 if they are flat as
   /// given, but for rounding.
   double moved = 0;
   /// If traced: junctions inside the solid, and seams, of the whole diagram.

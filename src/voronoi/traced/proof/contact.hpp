@@ -29,8 +29,9 @@ struct Tube {
 /// Sites that are closest to the points of a curve, or to one point. Sites with one footprint are one group, because
 /// their domains are side by side, and their distances are together one function with a continuous gradient.
 ///
-/// Points with these closest sites are the solutions of equations: groups have the same distance, and points lie in the
-/// planes between the domains of a group. In general position, a curve has two equations, and a point three.
+/// Points with these closest sites are the solutions of equations. Groups have the same
+/// distance, and points lie in the planes between the domains of a group. In general position, a curve has two
+/// equations, and a point three.
 ///
 /// In symmetric solids, some equations follow from the others, exactly, and are left out (implied_equations()).
 class Contact {
@@ -54,8 +55,8 @@ class Contact {
   /// Returns true if a vertex of the mesh belongs to all members.
   [[nodiscard]] bool is_at_vertex(std::uint32_t vertex) const;
 
-  /// Returns true if for all points of a tube, the closest points of the members' planes, lines and points belong to
-  /// the members, except where another member of the group follows.
+  /// Returns true if footprints of all points of a tube on the members' planes, lines and points belong to the
+  /// members. They may pass to another member of the group.
   [[nodiscard]] bool are_inside_domains(const Tube& tube) const;
   /// Returns true if no other part of the border is closest to a point of a tube.
   /// @param border  the triangles of the mesh.

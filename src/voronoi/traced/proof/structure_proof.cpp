@@ -293,8 +293,8 @@ class Prover {
     return false;
   }
 
-  /// Returns a bound on the distance of the points with these closest sites from a tube's axis, if each section of the
-  /// tube contains exactly one. Otherwise returns nothing.
+  /// Returns a bound on the distance of a curve with these closest sites from a tube's axis. Returns nothing unless
+  /// each section of the tube contains exactly one of its points.
   [[nodiscard]] static std::optional<double> distance_from_axis(const Contact& contact, const Tube& tube) {
     const double reach = tube.reach();
     const std::vector<LinearBound> f = contact.equations(tube.centre, reach);

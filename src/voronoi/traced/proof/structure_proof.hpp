@@ -34,12 +34,12 @@ struct StructureProof {
 
 /// Proves junctions and seams of a traced structure.
 ///
-/// A junction is proven if a ball contains exactly one point with these closest sites, no other part of the border is
-/// closest to a point of the ball, and as many seams end there as in general position. The equations are then one to
-/// one in the ball (Newton and Kantorovich), so sheets and seams in it are those of linear functions. A seam is proven
-/// if cylinders around its pieces each contain exactly one curve with its closest sites, from one end to the other, and
-/// no other part of the border is closest there. At a vertex of the polyhedron, the diagram near it is a cone, so one
-/// section proves the piece that ends there. (docs/theory/voronoi.md, "Proven places".)
+/// A junction is proven if a ball contains exactly one point with these closest sites. No other part of the border may
+/// be closest to a point of the ball. As many seams must end there as in general position. The equations are then
+/// one to one in the ball (Newton and Kantorovich), so sheets and seams in it are those of linear functions. A seam is
+/// proven if cylinders around its pieces each contain exactly one curve with its closest sites, from one end to the
+/// other. No other part of the border may be closest there. At a vertex of the polyhedron, the diagram near it is a
+/// cone, so one section proves the piece that ends there. (docs/theory/voronoi.md, "Proven places".)
 ///
 /// The proof holds for every polyhedron with the same flat faces whose corners lie within SiteBounds::corner_error().
 /// @param mesh   of the sites.
