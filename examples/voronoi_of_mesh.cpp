@@ -25,10 +25,12 @@ int main(int argc, char** argv) try {
     return 1;
   }
   std::cout << "certified: components, tunnels, voids " << report.found[0] << ' ' << report.found[1] << ' '
-            << report.found[2] << "; within " << report.hausdorff_bound << " of the exact walls\n";
+            << report.found[2] << "; "
+            << (report.traced ? "chords of curved walls are within " : "distance from the exact diagram at most ")
+            << (report.traced ? report.chord : report.hausdorff_bound) << '\n';
 
   // A region contains the points that are closest to one site. voronoi_sites() lists the sites by number.
-  const std::vector<blum::VoronoiSite> sites = blum::voronoi_sites(mesh);
+  const std::vector<blum::VoronoiSite> sites = blum::voronoi_sites(mesh, report);
   double volume = 0;
   for (const blum::VoronoiRegion& region : blum::voronoi_regions(diagram.complex)) {
     const auto site = static_cast<std::size_t>(region.site);

@@ -22,6 +22,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/core/sort_unique.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/solid/solid.hpp"
@@ -264,15 +265,29 @@ void add_proof(const TracedSites& sites, const StructureProof& proof, VoronoiRep
   }
 }
 
+/// Returns VoronoiReport::joined_faces.
+std::vector<std::array<std::uint32_t, 2>> joined_faces(const TracedSites& sites, const PolyhedronSites& exact) {
+  std::vector<std::array<std::uint32_t, 2>> out;
+  for (std::uint32_t t = 0; t < exact.face_of.size(); ++t) {
+    const auto joined = static_cast<std::uint32_t>(sites[sites.face_of(t)].number);
+    if (joined != exact.face_of[t]) out.push_back({exact.face_of[t], joined});
+  }
+  detail::sort_unique(out);
+  return out;
+}
+
 constexpr const char* wrong_betti = "the traced diagram does not have the expected Betti numbers";
 
 /// Traces the diagram with one effort.
+/// @param left  work that tracing may still do, > 0. It is reduced by the work that was done.
 /// @return the reason why this is impossible; empty if it succeeded.
 std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, TraceEffort effort,
-                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+                  std::uint64_t& left, const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out,
+                  const Context& context) {
   const MeshView mesh = solid.surface().mesh;
-  const TracedResult traced = traced_structure(sites, effort, usual_work(sites), context);
+  const TracedResult traced = traced_structure(sites, effort, std::min(left, usual_work(sites)), context);
   timer.lap("traces");
+  left -= std::min(left, traced.work);
   if (!traced.structure) {
     const Vec3d place = traced.place + sites.origin();
     return traced.problem + " near " + exact_text(place.x) + ", " + exact_text(place.y) + ", " + exact_text(place.z);
@@ -321,14 +336,14 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
 
 /// Traces the diagram with the usual effort, and with more if that may help.
 /// @return the reason why this is impossible; empty if it succeeded.
-std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, const VoronoiOptions& options,
-                  PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
+std::string trace(const Solid& solid, const SiteTable& table, const TracedSites& sites, std::uint64_t& left,
+                  const VoronoiOptions& options, PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
   out.report.reflex_edges = sites.count(SiteKind::edge);
   out.report.reflex_vertices = sites.count(SiteKind::vertex);
-  std::string problem = trace(solid, table, sites, TraceEffort::usual, options, timer, out, context);
+  std::string problem = trace(solid, table, sites, TraceEffort::usual, left, options, timer, out, context);
   // More walks across sheets may find what is missing. They do not help against other problems.
-  if (problem == wrong_betti) {
-    problem = trace(solid, table, sites, TraceEffort::full, options, timer, out, context);
+  if (problem == wrong_betti && left > 0) {
+    problem = trace(solid, table, sites, TraceEffort::full, left, options, timer, out, context);
   }
   return problem;
 }
@@ -342,25 +357,42 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
   std::vector<std::pair<double, TracedPlaces>> ways{{flatness, TracedPlaces::merged},
                                                     {flatness, TracedPlaces::separate}};
   if (flatness > 0) ways.emplace_back(0.0, TracedPlaces::separate);
+  std::optional<std::uint64_t> left;  // work that all ways together may still do
   std::string first;
   std::vector<TracedSites::Index> tried;  // the faces of a separate way that failed
   for (const auto& [own, places] : ways) {
     const std::optional<TracedSites> sites = TracedSites::of(mesh, table, exact, own, places);
     timer.lap("sites");
-    std::string problem = "joined triangles are not flat";
+    std::string problem = "joined triangles do not make flat faces";
     if (sites) {
       // Separate ways with the same faces are the same.
       if (places == TracedPlaces::separate) {
         if (tried == sites->faces()) continue;
         tried = sites->faces();
       }
-      out.report.flatness = own;
-      problem = trace(solid, table, *sites, options, timer, out, context);
+      if (!left) {
+        left = options.method == VoronoiMethod::automatic ? default_work(*sites, mesh.triangles.size())
+                                                          : std::numeric_limits<std::uint64_t>::max();
+      }
+      problem = *left > 0 ? trace(solid, table, *sites, *left, options, timer, out, context)
+                          : "tracing " + std::to_string(sites->size()) + " sites is too much work";
+      if (out.report.traced) {
+        out.report.flatness = 2 * own;
+        out.report.joined_faces = joined_faces(*sites, exact);
+        return;
+      }
     }
-    if (out.report.traced) return;
     if (first.empty()) first = problem;
+    if (left == 0) break;
   }
   out.report.trace_problem = first;
+}
+
+/// Returns true if tracing is tried for solids that are not convex. By default, medial axes come from cubes: their
+/// sheets pass smoothly from one pair of sites to another, so fewer triangles represent them.
+bool is_traced(const VoronoiOptions& options) {
+  if (options.method != VoronoiMethod::automatic) return options.method == VoronoiMethod::traced;
+  return options.part != VoronoiPart::medial_axis && !options.tolerance;
 }
 
 /// @param phases  phases that were already completed.
@@ -382,7 +414,7 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
       return out;
     }
   }
-  if (options.method == VoronoiMethod::traced) {
+  if (is_traced(options)) {
     trace(solid, table, sites, options, timer, out, context);
     if (report.traced) return out;
   }

@@ -156,7 +156,7 @@ def test_a_box_is_certified(parts, tmp_path):
 
 
 def test_a_bracket_as_text(parts, tmp_path):
-    text, _ = run("voronoi", parts / "bracket.ply", "--method", "traced", "-o", tmp_path / "b.vtp", "--verbose")
+    text, _ = run("voronoi", parts / "bracket.ply", "-o", tmp_path / "b.vtp", "--verbose")
     assert CERTIFIED in text and "144 reflex edges, 4 reflex vertices" in text and f"wrote      {tmp_path}" in text
     rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
     assert rows["topology"] == (

@@ -158,8 +158,7 @@ TEST(VoronoiSolids, OfRealPartsAreTraced) {
   for (const char* name : {"7_8ths_cube.stl", "abc9.stl", "eight.off", "plate_holes.STL", "round.stl"}) {
     const auto path = test::data_file(std::string("meshes/") + name);
     if (!path) GTEST_SKIP() << test::no_data(name);
-    const VoronoiReport report =
-        voronoi_complex(weld(read_mesh(*path)), {.part = VoronoiPart::walls, .method = VoronoiMethod::traced}).report;
+    const VoronoiReport report = voronoi_complex(weld(read_mesh(*path)), {.part = VoronoiPart::walls}).report;
     EXPECT_TRUE(report.traced) << name << ": " << report.trace_problem;
     EXPECT_TRUE(report.certified) << name;
   }

@@ -81,7 +81,7 @@ def test_variants_have_the_same_sites(solid):
 def test_sites_have_the_numbers_of_blum():
     blum = pytest.importorskip("blum")
     for solid in SOLIDS[::4]:
-        found = blum.voronoi_complex(solid.vertices, solid.triangles, resolution=2, depth=1, grids=1).sites()
+        found = blum.voronoi_complex(solid.vertices, solid.triangles, method="cubes", resolution=2, depth=1).sites()
         numbers = [
             (site.kind, tuple((site.triangles if site.kind == "face" else site.vertices).tolist())) for site in found
         ]

@@ -167,7 +167,7 @@ def test_metadata_must_be_text_and_complexes_plain(tmp_path):
     for metadata in ({"a": "\ud800"}, {"a\0": "b"}, {"": "b"}):
         with pytest.raises(blum.InvalidOption):
             blum.write_complex(path, made, metadata=metadata)
-    diagram = blum.voronoi_complex(blum.generate("gear"), depth=3)
+    diagram = blum.voronoi_complex(blum.generate("gear"), method="cubes", depth=3)
     for special in (diagram, blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)):
         with pytest.raises(TypeError, match=r"write\(\)"):
             blum.write_complex(path, special)
@@ -183,7 +183,7 @@ def test_files_of_diagrams_read_back_as_complexes(tmp_path):
     assert file.metadata["content"] == "Voronoi diagram" and file.metadata["certified"] == "true"
     assert float(file.metadata["hausdorff_bound"]) == found.report.hausdorff_bound
     assert np.array_equal(file.complex.triangle_columns["site_b"], found.triangle_sites[:, 1])
-    failed = blum.voronoi_complex(blum.generate("gear"), depth=3)
+    failed = blum.voronoi_complex(blum.generate("gear"), method="cubes", depth=3)
     failed.write(tmp_path / "gear.vtp", allow_uncertified=True)
     about = blum.read_complex(tmp_path / "gear.vtp").metadata
     assert about["certified"] == "false" and int(about["failing_cubes"]) == len(failed.report.failing)

@@ -39,9 +39,11 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,  ///< If all bodies are convex: planes. Otherwise: cubes.
+  automatic,  ///< If all bodies are convex: planes. Otherwise: seams are traced. Cubes if this fails or takes long, for
+              ///< medial axes, and if a tolerance is given: only cubes bound the distance from the exact diagram.
   cubes,      ///< Cubes of an octree, each with a proof of its topology.
-  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced. If this fails: cubes.
+  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced, which may take minutes. If it fails:
+              ///< cubes.
 };
 
 template <>
@@ -62,11 +64,13 @@ struct VoronoiOptions {
   /// error is that of the precision whose digits the longest coordinate fills. With up to 20 binary digits it is 0,
   /// with 21 to 24 that of single precision. Cubes: ignored.
   std::optional<double> flatness = {};
-  /// The options below are for cubes. Limit for the side of cubes that meet the solid. The limit is the longest side of
-  /// the solid's box, divided by this number, 1 to 1024.
+  /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
+  /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Planes: ignored.
   int resolution = 16;
-  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies.
+  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With this
+  /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of it.
   std::optional<double> tolerance = {};
+  /// The options below only matter if cubes are used: they do not select cubes.
   /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
   /// `tolerance` requires them.
   int depth = 24;
@@ -85,9 +89,10 @@ struct Description<VoronoiOptions> {
   static constexpr std::tuple members{
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
-      Member{"method", &VoronoiOptions::method, "",
-             "auto: exact planes if all bodies are convex, otherwise cubes; cubes: always; traced: seams are followed "
-             "instead, if this succeeds"},
+      Member{
+          "method", &VoronoiOptions::method, "",
+          "auto: exact planes if all bodies are convex, otherwise traced seams, for medial axes cubes; cubes: always; "
+          "traced: seams also for medial axes"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "planes and traces: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
@@ -186,14 +191,16 @@ struct Description<OpenVoronoiPlace> {
 
 struct VoronoiReport {
   /// True if every cube passes the test, no signs contradict each other, and the Betti numbers are the expected ones.
-  /// Then the complex provably has the homology of the requested part of the exact diagram.
+  /// Then the complex provably has the homology of the requested part of the exact diagram. If exact or traced, there
+  /// are no cubes, and only the Betti numbers count.
   bool certified = false;
   /// True if all bodies are convex, and the method was not `cubes`. Then each sheet, seam and junction is that of the
   /// exact diagram of the bodies' planes. See VoronoiReport::flatness and VoronoiReport::joined.
   bool exact = false;
   double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
   double joined = 0;    ///< If exact or traced: junctions and seams within this distance are one, mesh units.
-  /// If exact: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second, smaller one.
+  /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second,
+  /// smaller one. Reflex edges and vertices inside a joined face are not sites, so they have no regions.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
   /// True if the seams were traced (VoronoiMethod::traced). Then sheets, seams and junctions are those of the diagram
   /// within `joined`, as far as checks show. All sheets are closed, and the complex has the expected Betti numbers.
@@ -260,9 +267,9 @@ struct Description<VoronoiReport> {
       Member{"exact", &VoronoiReport::exact, "",
              "true if each sheet, seam and junction is that of the exact diagram: all bodies are convex"},
       Member{"flatness", &VoronoiReport::flatness, "mesh units",
-             "if exact: largest distance of a triangle's corner from its face's plane"},
+             "if exact or traced: bound on the distance of a triangle's corner from its face's plane"},
       Member{"joined", &VoronoiReport::joined, "mesh units",
-             "if exact: junctions and seams within this distance are one"},
+             "if exact or traced: junctions and seams within this distance are one"},
       Member{"joined_faces", &VoronoiReport::joined_faces, "",
              "pairs of faces: the first one was joined to the second one, since rounding bends them"},
       Member{"traced", &VoronoiReport::traced, "",
@@ -349,7 +356,11 @@ struct VoronoiComplex {
 /// distances from the faces' planes, so its graph bounds a convex polytope in four dimensions. The facets, ridges,
 /// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which exist. Sheets
 /// are divided into triangles without further vertices, except one in the middle of some. (docs/theory/voronoi.md,
-/// "Convex solids".) All other solids are divided into cubes:
+/// "Convex solids".)
+///
+/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between them are divided
+/// into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the solid is
+/// divided into cubes:
 ///
 /// Let K be the union of the surface and the walls between regions of different sites. An octree in generic position
 /// cuts space into cubes. The closest sites along the edges of cubes follow from the order of roots, or from exact
@@ -365,10 +376,11 @@ struct VoronoiComplex {
 ///
 /// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
 /// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
-/// of the mesh. Triangles are used as given, so a face that rounding has bent counts as several sites.
+/// of the mesh. Cubes use triangles as given, so a face that rounding has bent counts as several sites.
 /// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
-/// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Otherwise about 0.1 ms on
-/// one core and 10 kB of memory per cube. Meshes of 1,000 triangles need thousands to tens of thousands of cubes.
+/// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
+/// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000 triangles
+/// need thousands to tens of thousands of cubes.
 [[nodiscard]] VoronoiComplex voronoi_complex(const Solid& solid, const VoronoiOptions& options = {},
                                              const Context& context = {});
 

@@ -61,7 +61,9 @@ struct Description<VoronoiSeam> {
 /// Point in which several seams meet, or in which one seam ends.
 struct VoronoiJunction {
   std::uint32_t vertex = 0;  ///< Index of its vertex in the complex.
-  Vec3d position;  ///< Position of the vertex, mesh units. Its error is at most VoronoiReport::hausdorff_bound.
+  /// Position of the vertex, mesh units. Its error is at most VoronoiReport::hausdorff_bound. If the diagram is traced,
+  /// it is about VoronoiReport::joined.
+  Vec3d position;
   std::vector<std::int32_t> sites;   ///< Sites of the regions around it, ascending.
   std::vector<std::uint32_t> seams;  ///< Indices of the seams that end at the junction, ascending.
 };
@@ -73,7 +75,7 @@ struct Description<VoronoiJunction> {
   static constexpr std::tuple members{
       Member{"vertex", &VoronoiJunction::vertex, "", "vertex of the complex"},
       Member{"position", &VoronoiJunction::position, "mesh units",
-             "position of that vertex; its error is at most hausdorff_bound"},
+             "position of that vertex; its error is at most hausdorff_bound, or about joined if traced"},
       Member{"sites", &VoronoiJunction::sites, "", "sites of the regions around it"},
       Member{"seams", &VoronoiJunction::seams, "", "seams that begin or end there: indices into the list of seams"},
   };

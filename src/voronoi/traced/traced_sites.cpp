@@ -105,6 +105,7 @@ class SiteFinder {
     if (!add_faces()) return std::nullopt;
     add_edges();
     add_vertices();
+    if (!have_numbers_) return std::nullopt;
     std::vector<Box3> boxes;
     for (TracedSite& site : out_.sites_) {
       detail::sort_unique(site.vertices);
@@ -287,9 +288,13 @@ class SiteFinder {
                      [&](std::size_t i) { return out_.edges_[list[i]].is_reflex(); })) {
       return;
     }
+    const auto place = std::lower_bound(sites_.reflex_vertices.begin(), sites_.reflex_vertices.end(), v);
+    if (place == sites_.reflex_vertices.end() || *place != v) {
+      have_numbers_ = false;
+      return;
+    }
     TracedSite& site = out_.sites_.emplace_back();
     site.kind = SiteKind::vertex;
-    const auto place = std::lower_bound(sites_.reflex_vertices.begin(), sites_.reflex_vertices.end(), v);
     site.number = static_cast<std::int32_t>(sites_.face_count + sites_.reflex_edges.size()) +
                   static_cast<std::int32_t>(place - sites_.reflex_vertices.begin());
     site.triangle_or_element = v;
@@ -306,6 +311,7 @@ class SiteFinder {
   const double flatness_;
   const TracedPlaces places_;
   TracedSites out_;
+  bool have_numbers_ = true;  ///< false if a vertex is reflex only since triangles were joined
 };
 
 std::optional<TracedSites> TracedSites::of(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,

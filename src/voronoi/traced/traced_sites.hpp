@@ -81,7 +81,7 @@ class TracedSites {
  public:
   using Index = std::uint32_t;
 
-  /// Returns nothing if joined triangles cannot be made flat.
+  /// Returns nothing if joined triangles cannot be made flat, or make other vertices reflex.
   /// @param flatness  triangles whose corners lie within twice this distance of one plane are one face, mesh units.
   static std::optional<TracedSites> of(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                                        double flatness, TracedPlaces places);

@@ -53,6 +53,16 @@ std::uint64_t usual_work(const TracedSites& sites) {
   return per_site * sites.size();
 }
 
+std::uint64_t default_work(const TracedSites& sites, std::size_t triangles) {
+  const std::uint64_t count = sites.size();
+  if (3 * sites.face_count() > 2 * triangles) {  // few faces have several triangles
+    constexpr std::uint64_t least_per_site = 10'000, most_per_site = 40'000, most = 30'000'000;
+    return least_per_site * count > most ? 0 : std::min(most_per_site * count, most);
+  }
+  constexpr std::uint64_t per_small_site = 130'000, base = 40'000'000, per_site = 15'000, most = 300'000'000;
+  return std::min({per_small_site * count, base + per_site * count, most});
+}
+
 TracedResult traced_structure(const TracedSites& sites, TraceEffort effort, std::uint64_t most_work,
                               const Context& context) {
   TracedResult out;

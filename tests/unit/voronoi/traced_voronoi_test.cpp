@@ -21,6 +21,8 @@
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_regions.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
 #include "support/mesh_places.hpp"
 #include "voronoi/label_geometry.hpp"
 #include "voronoi/planes/convex_faces.hpp"
@@ -123,14 +125,19 @@ TEST(TracedDiagram, OfNearlyFlatVerticesIsTraced) {
   }
 }
 
-/// Rounding to 32 bits bends the bases of a turned prism. They become flat, and vertices move by about the rounding.
-TEST(TracedDiagram, JoinsAndFlattensFacesOfRoundedCoordinates) {
+/// Returns a turned prism of 12 sides, 6 of whose edges are reflex. Rounding to 32 bits bends its bases.
+TriangleMesh rounded_star() {
   std::vector<Point2> outline;
   for (int k = 0; k < 12; ++k) {
     const double angle = k * std::numbers::pi / 6;
     outline.push_back({(k % 2 == 0 ? 2 : 1) * std::cos(angle), (k % 2 == 0 ? 2 : 1) * std::sin(angle)});
   }
-  const TriangleMesh mesh = test::in_single_precision(test::turned(prism(outline, 1)));
+  return test::in_single_precision(test::turned(prism(outline, 1)));
+}
+
+/// Bent bases become flat, and vertices move by about the rounding.
+TEST(TracedDiagram, JoinsAndFlattensFacesOfRoundedCoordinates) {
+  const TriangleMesh mesh = rounded_star();
   const SiteTable table(mesh);
   const double flatness = rounding_of_coordinates(mesh);
   const std::vector<std::uint32_t> joined =
@@ -141,6 +148,39 @@ TEST(TracedDiagram, JoinsAndFlattensFacesOfRoundedCoordinates) {
   EXPECT_LT(flatten_faces(mesh, joined, vertices), 1e-15);
   EXPECT_LT(largest_height(mesh, joined, vertices), 1e-13);
   for (std::size_t v = 0; v < vertices.size(); ++v) EXPECT_LT(length(vertices[v] - mesh.vertices[v]), 2 * flatness);
+}
+
+/// Each face that is left has a region, and the region has the surface of the face's triangles.
+TEST(TracedDiagram, ReportsJoinedFaces) {
+  const TriangleMesh mesh = rounded_star();
+  const VoronoiComplex all = voronoi_complex(mesh, {.method = VoronoiMethod::traced});
+  ASSERT_TRUE(all.report.traced) << all.report.trace_problem;
+  EXPECT_EQ(all.report.faces, 14U);
+  EXPECT_FALSE(all.report.joined_faces.empty());
+  std::map<std::int32_t, double> area_of;
+  for (const VoronoiRegion& region : voronoi_regions(all.complex)) area_of[region.site] = region.surface_area;
+  EXPECT_EQ(area_of.size(), 20U);
+  const std::vector<VoronoiSite> sites = voronoi_sites(mesh, all.report);
+  std::size_t faces = 0;
+  for (std::int32_t k = 0; k < static_cast<std::int32_t>(sites.size()); ++k) {
+    const VoronoiSite& site = sites[static_cast<std::size_t>(k)];
+    if (site.triangles.empty()) continue;
+    double area = 0;
+    for (const std::uint32_t t : site.triangles) {
+      const auto [a, b, c] = triangle_corners(mesh, t);
+      area += length(cross(b - a, c - a)) / 2;
+    }
+    EXPECT_NEAR(area_of[k], area, 1e-9);
+    ++faces;
+  }
+  EXPECT_EQ(faces, all.report.faces);
+}
+
+/// Coordinates that are not rounded join no faces.
+TEST(TracedDiagram, ReportsNoJoinedFacesOfFlatOnes) {
+  const VoronoiReport report = walls_of(prism(ell, 20)).report;
+  EXPECT_TRUE(report.traced);
+  EXPECT_TRUE(report.joined_faces.empty());
 }
 
 TEST(TracedDiagram, DoesNotDependOnThePlaceOfTheSolid) {
@@ -210,6 +250,36 @@ TEST(TracedDiagram, StopsAtALimitOfItsWork) {
   const TracedResult enough = traced_structure(sites, TraceEffort::usual, 8 * whole[0].work, {});
   ASSERT_TRUE(enough.structure);
   EXPECT_EQ(enough.structure->curves.size(), whole[0].structure->curves.size());
+}
+
+/// By default, fine tessellations are not traced if they have many sites.
+TEST(TracedDiagram, HasALimitByDefault) {
+  const auto default_work_of = [](const TriangleMesh& mesh) {
+    return default_work(sites_of(mesh), mesh.triangles.size());
+  };
+  const TriangleMesh bracket = make_bracket();
+  const TracedSites sites = sites_of(bracket);
+  const std::uint64_t work = traced_structure(sites, TraceEffort::usual, usual_work(sites), {}).work;
+  EXPECT_GT(default_work_of(bracket), 4 * work);
+  const std::uint64_t coarse = default_work_of(make_torus({.ring_segments = 20, .tube_segments = 10}));
+  EXPECT_GT(coarse, 0U);
+  EXPECT_LT(coarse, default_work_of(bracket));
+  EXPECT_EQ(default_work_of(make_torus({.ring_segments = 80, .tube_segments = 40})), 0U);
+}
+
+/// Cubes bound the distance from the exact diagram, and make the smaller medial axes.
+TEST(TracedDiagram, IsTheDefaultExceptForAxesAndTolerances) {
+  const TriangleMesh mesh = prism(ell, 2);
+  for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls}) {
+    const VoronoiReport report = voronoi_complex(mesh, {.part = part}).report;
+    EXPECT_TRUE(report.traced) << report.trace_problem;
+    EXPECT_TRUE(report.certified);
+    EXPECT_FALSE(voronoi_complex(mesh, {.part = part, .tolerance = 1}).report.traced);
+    EXPECT_FALSE(voronoi_complex(mesh, {.part = part, .method = VoronoiMethod::cubes}).report.traced);
+  }
+  const VoronoiPart axis = VoronoiPart::medial_axis;
+  EXPECT_FALSE(voronoi_complex(mesh, {.part = axis}).report.traced);
+  EXPECT_TRUE(voronoi_complex(mesh, {.part = axis, .method = VoronoiMethod::traced}).report.traced);
 }
 
 /// Returns a torus whose vertices are moved at random, so that many faces are nearly parallel, and no symmetry is left.
