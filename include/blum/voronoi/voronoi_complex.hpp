@@ -379,8 +379,8 @@ struct VoronoiComplex {
 /// of the mesh. Cubes use triangles as given, so a face that rounding has bent counts as several sites.
 /// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
-/// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000 triangles
-/// need thousands to tens of thousands of cubes.
+/// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000
+/// triangles need thousands to tens of thousands of cubes.
 [[nodiscard]] VoronoiComplex voronoi_complex(const Solid& solid, const VoronoiOptions& options = {},
                                              const Context& context = {});
 

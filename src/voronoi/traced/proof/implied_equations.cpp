@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -54,12 +53,16 @@ class Symmetry {
   }
 
  private:
-  /// Returns -1 or 1 if a group is a face at right angles to an axis, and faces against it or along it. Otherwise
-  /// returns 0.
+  /// Returns -1 or 1 if a group is a face at right angles to an axis, exactly, and faces against it or along it.
+  /// Otherwise returns 0.
   [[nodiscard]] int facing(std::size_t group, std::size_t axis) const {
     if (groups_[group].size() != 1) return 0;
     const TracedSite& site = traced_[groups_[group][0]];
-    if (site.kind != SiteKind::face || std::abs(site.direction[axis]) != 1) return 0;
+    if (site.kind != SiteKind::face) return 0;
+    // Directions are rounded, so that of a face that leans by less than 1e-8 may look like an axis.
+    const double place = corner(group)[axis];
+    const auto is_in_plane = [&](std::uint32_t v) { return mesh_.vertices[v][axis] == place; };
+    if (!std::all_of(site.vertices.begin(), site.vertices.end(), is_in_plane)) return 0;
     return site.direction[axis] > 0 ? 1 : -1;
   }
 

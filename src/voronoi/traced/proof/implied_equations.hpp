@@ -24,8 +24,9 @@ struct ImpliedEquations {
 /// Finds implied equations of groups of sites with one distance. Doubles with rounding cannot show them, but
 /// coordinates can.
 ///
-/// Slabs: faces at right angles to an axis that face each other. The sum of both distances is the width. Slabs across
-/// several axes may have the same width, as in a square bar. One face of each slab after the first is then implied.
+/// Slabs: faces exactly at right angles to an axis that face each other. The sum of both distances is the width. Slabs
+/// across several axes may have the same width, as in a square bar. One face of each slab after the first is then
+/// implied.
 ///
 /// Mirrors: the corners of one group are those of another one, mirrored along an axis, or with two axes exchanged. The
 /// distances of both are equal in the plane of the mirror, and so are the planes between their members. Several pairs
