@@ -169,6 +169,44 @@ TEST(StructureProof, RefusesASeamThatPassesAJunction) {
   EXPECT_GT(tried, 10U);
 }
 
+/// Two seams between the same junctions, where one of them counts for a missing one, do not agree with the count.
+TEST(StructureProof, RefusesARepeatedSeam) {
+  TracedSolid solid(irregular_ell(6));
+  const std::vector<TracedStructure::Curve> before = solid.structure.curves;
+  const std::size_t all = solid.proof().proven_junctions;
+  std::size_t tried = 0;
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    for (std::size_t other = 0; other < before.size(); ++other) {
+      if (c == other || before[c].is_edge || before[other].is_edge) continue;
+      solid.structure.curves = before;
+      // The copy ends where the other seam ended.
+      for (const std::size_t k : {0U, 1U}) {
+        const std::uint32_t end = before[other].ends[0];
+        if (before[c].ends[k] != end || solid.structure.junctions[end].vertex != TracedStructure::none) continue;
+        solid.structure.curves[other] = before[c];
+        solid.structure.curves[other].ends = {end, before[other].ends[1]};
+        EXPECT_LT(solid.proof().proven_junctions, all);
+        ++tried;
+      }
+    }
+  }
+  EXPECT_GT(tried, 10U);
+}
+
+/// A second junction at the same place, with seams of its own, does not exist.
+TEST(StructureProof, RefusesARepeatedDiagram) {
+  TracedSolid solid(irregular_ell(6));
+  const auto count = static_cast<std::uint32_t>(solid.structure.junctions.size());
+  for (std::uint32_t k = 0; k < count; ++k) solid.structure.junctions.push_back(solid.structure.junctions[k]);
+  const std::size_t curves = solid.structure.curves.size();
+  for (std::size_t c = 0; c < curves; ++c) {
+    TracedStructure::Curve copy = solid.structure.curves[c];
+    for (std::uint32_t& end : copy.ends) end += count;
+    solid.structure.curves.push_back(std::move(copy));
+  }
+  EXPECT_EQ(solid.proof().proven_junctions, 0U);
+}
+
 VoronoiReport report_of(const TriangleMesh& mesh) {
   VoronoiReport report = voronoi_complex(mesh, {.part = VoronoiPart::walls, .method = VoronoiMethod::traced}).report;
   EXPECT_TRUE(report.traced) << report.trace_problem;
@@ -216,6 +254,26 @@ TEST(StructureProof, LeavesLeaningSquareEndsOpen) {
   const VoronoiReport report = report_of(mesh);
   EXPECT_FALSE(report.proven);
   EXPECT_LT(report.proven_seams, report.seams);
+}
+
+/// The sides of a prism with four vertical edges are flat, exactly. If one is bent within rounding, the proof is that
+/// of a polyhedron with other corners.
+TEST(StructureProof, ReportsCornersOfBentFacesAsMoved) {
+  const std::vector<Point2> outline{{0, 0}, {4, 0}, {4.1, 1.3}, {2.1, 1.3}, {0.1, 1.3}};
+  TriangleMesh mesh = make_extrusion(outline, {}, {.thickness = 2});
+  for (const double bent : {0.0, 4e-15}) {
+    for (Vec3d& p : mesh.vertices) p.y -= p.x == 2.1 ? bent : 0;
+    const SiteTable table(mesh);
+    const auto sites = TracedSites::of(mesh, table, polyhedron_sites(mesh, table), rounding_of_coordinates(mesh),
+                                       TracedPlaces::merged);
+    const TracedResult traced = traced_structure(*sites, TraceEffort::usual, usual_work(*sites), {});
+    const double moved = prove_structure(*sites, mesh, table, *traced.structure, {}).moved;
+    if (bent > 0) {
+      EXPECT_GE(moved, bent / 2);
+    } else {
+      EXPECT_EQ(moved, 0);
+    }
+  }
 }
 
 /// Returns a T whose stem is moved sideways.

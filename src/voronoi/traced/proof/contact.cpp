@@ -96,8 +96,27 @@ std::size_t Contact::equation_count() const {
   return count;
 }
 
+bool Contact::is_regular(const Vec3d& at) const {
+  for (const Group& group : groups_) {
+    const auto count = [&](SiteKind kind) {
+      return std::count_if(group.members.begin(), group.members.end(), [&](Index i) { return sites_[i].kind == kind; });
+    };
+    if (group.basis.size() < 2 && group.members.size() != group.basis.size() + 1) return false;
+    // A face and both edges at one of its corners; the corner, too, if it has a domain.
+    if (group.basis.size() == 2 && (count(SiteKind::face) != 1 || count(SiteKind::edge) != 2)) return false;
+    if (group.basis.size() > 2) return false;
+  }
+  // Mirrored lines that are not parallel have the same distance in two planes. Only one is that of the mirror.
+  return std::all_of(
+      implied_.planes_of_mirrors.begin(), implied_.planes_of_mirrors.end(), [&](const MirrorPlane& plane) {
+        const Vec3d across =
+            sites_.gradient(groups_[plane.first].lead, at) - sites_.gradient(groups_[plane.second].lead, at);
+        return std::abs(dot(across, plane.normal)) > 0.9 * length(across);
+      });
+}
+
 std::size_t Contact::degree(const Vec3d& at) const {
-  if (equation_count() != 3) return 0;
+  if (equation_count() != 3 || !is_regular(at)) return 0;
   if (implied_.mirrors == 1 && !implied_.has_slabs) return degree_in_mirror();
   if (implied_.is_any()) return degree_of_symmetric(at);
   for (const Group& group : groups_) {
@@ -179,7 +198,9 @@ LinearBound Contact::distance(const Group& group, const Vec3d& x, double reach) 
   // On the other side of a plane, the distance is that of another member. Both have the same gradient in the plane.
   for (const GroupPlane& plane : group.planes) {
     const double height = plane.side->height(x);
-    if (height != 0) out.value.error += height * height * out.bend;
+    if (height == 0) continue;
+    out.value.error += height * height * out.bend;
+    out.turned += 2 * std::abs(height) * out.bend;
   }
   return out;
 }

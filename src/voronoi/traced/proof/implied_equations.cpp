@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -31,6 +32,14 @@ struct Mirror {
     }
     const ExactSum offset = exact_sum(q[a], -sign * p[b]);
     return offset == exact_sum(p[a], -sign * q[b]) ? std::optional(offset) : std::nullopt;
+  }
+
+  [[nodiscard]] Vec3d normal() const {
+    Vec3d out;
+    out[a] = 1;
+    if (a == b) return out;
+    out[b] = -sign;
+    return out / std::sqrt(2.0);
   }
 };
 
@@ -155,6 +164,7 @@ class Symmetry {
 
   void find_mirrored(const Mirror& mirror) {
     std::optional<ExactSum> first;
+    MirrorPlane plane{0, 0, mirror.normal()};
     bool is_used = false;
     for (std::size_t a = 0; a < groups_.size(); ++a) {
       for (std::size_t b = a + 1; b < groups_.size(); ++b) {
@@ -163,6 +173,8 @@ class Symmetry {
         if (!first) {
           if (out_.distance[a] || out_.distance[b]) continue;
           first = offset;
+          plane.first = a;
+          plane.second = b;
           is_kept_[a] = is_kept_[b] = true;
         } else if (!imply_one_of(a, b)) {
           continue;
@@ -175,7 +187,9 @@ class Symmetry {
         out_.image[b] = a;
       }
     }
-    if (is_used) ++out_.mirrors;
+    if (!is_used) return;
+    ++out_.mirrors;
+    out_.planes_of_mirrors.push_back(plane);
   }
 
   const TracedSites& traced_;

@@ -4,10 +4,17 @@
 #include <cstddef>
 #include <vector>
 
+#include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 
 namespace blum::voronoi {
+
+/// The plane of a mirror that implies equations: in it, two groups have the same distance.
+struct MirrorPlane {
+  std::size_t first, second;  ///< groups
+  Vec3d normal;               ///< unit vector
+};
 
 /// Equations that other equations imply, exactly, and the symmetry that shows it.
 struct ImpliedEquations {
@@ -16,7 +23,8 @@ struct ImpliedEquations {
   /// The mirror image of each group, if there is one; otherwise the group itself.
   std::vector<std::size_t> image;
   std::size_t mirrors = 0;  ///< number of mirrors that imply equations
-  bool has_slabs = false;   ///< equal widths imply equations
+  std::vector<MirrorPlane> planes_of_mirrors;
+  bool has_slabs = false;  ///< equal widths imply equations
 
   [[nodiscard]] bool is_any() const { return mirrors > 0 || has_slabs; }
 };

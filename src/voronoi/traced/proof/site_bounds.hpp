@@ -43,6 +43,8 @@ class SiteBounds {
   [[nodiscard]] double corner_error() const { return corner_error_; }
   /// Returns the largest distance of a site's vertex from that of the mesh, in mesh units.
   [[nodiscard]] double moved() const { return moved_; }
+  /// Returns true if no corner was moved, and all faces are flat as given, exactly.
+  [[nodiscard]] bool are_faces_exact() const { return are_faces_exact_; }
   /// Returns true if no corner was moved, and all faces are flat as given, but for rounding.
   [[nodiscard]] bool are_corners_exact() const { return moved_ == 0 && corner_error_ <= 4 * rounding_; }
   /// Returns a bound on the rounding error of a distance, in mesh units.
@@ -58,11 +60,16 @@ class SiteBounds {
   [[nodiscard]] double direction_error(Index i) const { return direction_error_[i]; }
 
  private:
+  void add_side_errors();
+
   const TracedSites& sites_;
   double corner_error_ = 0;
   double moved_ = 0;
   double rounding_ = 0;
+  bool are_faces_exact_ = false;
   std::vector<double> direction_error_;  ///< of each site
+  /// For each site, of the normals of its sides, without that of the site beyond.
+  std::vector<double> side_error_;
 };
 
 }  // namespace blum::voronoi

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -25,6 +27,9 @@ using Junction = TracedStructure::Junction;
 /// Seams leave the ball of a proven junction at this share of its radius. Points up to there are on the seam that ends
 /// at the junction, as the proof in docs/theory/voronoi.md shows.
 constexpr double share_of_ball = 0.3;
+/// Seams pass the points in which they are cut within this share of the radius. The cuts are up to 0.33 of the radius
+/// away, and the proof above holds up to 0.375.
+constexpr double share_beside_cut = 0.04;
 constexpr std::size_t most_halvings_of_seam = 4000;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -104,7 +109,7 @@ class Prover {
   }
 
   StructureProof prove() {
-    out_.moved = bounds_.are_corners_exact() ? 0 : bounds_.moved() + bounds_.corner_error();
+    out_.moved = bounds_.are_faces_exact() ? 0 : bounds_.moved() + bounds_.corner_error();
     count_ends();
     prove_junctions();
     prove_seams();
@@ -114,10 +119,13 @@ class Prover {
  private:
   void count_ends() {
     ends_.assign(structure_.junctions.size(), 0);
-    for (const Curve& curve : structure_.curves) {
-      if (curve.is_edge) continue;
-      for (const std::uint32_t end : curve.ends) {
-        if (end != TracedStructure::none) ++ends_[end];
+    seams_at_.resize(structure_.junctions.size());
+    for (std::uint32_t c = 0; c < structure_.curves.size(); ++c) {
+      if (structure_.curves[c].is_edge) continue;
+      for (const std::uint32_t end : structure_.curves[c].ends) {
+        if (end == TracedStructure::none) continue;
+        ++ends_[end];
+        seams_at_[end].push_back(c);
       }
     }
   }
@@ -132,6 +140,7 @@ class Prover {
         balls_[k] = junction.vertex != TracedStructure::none ? cone_at(junction.vertex) : ball_at(k, doubts[k]);
       }
     });
+    leave_repeated_open(doubts);
     for (std::size_t k = 0; k < count; ++k) {
       const Junction& junction = structure_.junctions[k];
       if (balls_[k].is_point_of_seam || junction.vertex != TracedStructure::none || ends_[k] == 0) continue;
@@ -140,6 +149,46 @@ class Prover {
         ++out_.proven_junctions;
       } else {
         out_.open.push_back({junction.at, balls_[k].radius, junction.sites, doubts[k]});
+      }
+    }
+  }
+
+  /// Returns true if a point is where the points of a closed seam start and end.
+  [[nodiscard]] bool is_start_of_loop(std::size_t k) const {
+    const Junction& junction = structure_.junctions[k];
+    if (ends_[k] != 2) return false;
+    const Curve& curve = structure_.curves[seams_at_[k].front()];
+    return curve.ends[0] == k && curve.ends[1] == k && curve.curve.sites == junction.sites &&
+           length(curve.points.back() - curve.points.front()) <= sites_.tolerance();
+  }
+
+  /// Returns true if no two seams at a junction have the same sites. Otherwise, a seam may count for a missing one.
+  [[nodiscard]] bool are_seams_distinct(std::size_t k) const {
+    std::set<std::vector<Index>> known;
+    return std::all_of(seams_at_[k].begin(), seams_at_[k].end(),
+                       [&](std::uint32_t c) { return known.insert(structure_.curves[c].curve.sites).second; });
+  }
+
+  /// Junctions with the same sites are different only if their solutions are.
+  void leave_repeated_open(std::vector<VoronoiDoubt>& doubts) {
+    std::map<std::vector<Index>, std::vector<std::size_t>> with;
+    for (std::size_t k = 0; k < balls_.size(); ++k) {
+      const bool is_junction = balls_[k].is_proven && !balls_[k].is_point_of_seam;
+      if (is_junction && structure_.junctions[k].vertex == TracedStructure::none) {
+        with[structure_.junctions[k].sites].push_back(k);
+      }
+    }
+    for (const auto& [own, list] : with) {
+      for (std::size_t a = 0; a < list.size(); ++a) {
+        for (std::size_t b = a + 1; b < list.size(); ++b) {
+          // A solution lies within an eighth of the radius.
+          const double apart = length(structure_.junctions[list[a]].at - structure_.junctions[list[b]].at);
+          if (apart > 0.125 * (balls_[list[a]].radius + balls_[list[b]].radius)) continue;
+          for (const std::size_t k : {list[a], list[b]}) {
+            balls_[k] = {open_radius(), false};
+            doubts[k] = VoronoiDoubt::seams;
+          }
+        }
       }
     }
   }
@@ -153,10 +202,10 @@ class Prover {
     const Contact contact(bounds_, mesh_, junction.sites, 3);
     const KnownBall open{open_radius(), false};
     doubt = VoronoiDoubt::degenerate;
-    if (contact.equation_count() == 2 && ends_[k] == 2) return {0, true, true};
+    if (contact.equation_count() == 2 && is_start_of_loop(k)) return {0, true, true};
     if (contact.equation_count() != 3) return open;
     doubt = VoronoiDoubt::seams;
-    if (contact.degree(junction.at) != ends_[k]) return open;
+    if (contact.degree(junction.at) != ends_[k] || !are_seams_distinct(k)) return open;
     double radius = 0.25 * sites_.distance(junction.sites[0], junction.at);
     doubt = VoronoiDoubt::close;
     constexpr int most_halvings = 40;
@@ -203,6 +252,8 @@ class Prover {
 
   struct Piece {
     Vec3d a, b;
+    /// The seam has to pass each end within this distance.
+    std::array<double, 2> near{infinite, infinite};
   };
 
   void prove_seams() {
@@ -233,19 +284,24 @@ class Prover {
     };
     const Vec3d& first = curve.points.front();
     const Vec3d& last = curve.points.back();
-    if (contact.equation_count() != 2) return open(first, last, VoronoiDoubt::degenerate);
+    if (contact.equation_count() != 2 || !contact.is_regular((first + curve.points[1]) * 0.5)) {
+      return open(first, last, VoronoiDoubt::degenerate);
+    }
     std::vector<Vec3d> points = curve.points;
     TraceWork work;
     const SeamTracer tracer(sites_, work);
-    for (const std::uint32_t end : curve.ends) {
-      if (!cut_end(tracer, curve, end, contact, points)) {
-        return open(structure_.junctions[end].at, points.front(), VoronoiDoubt::close);
-      }
+    std::array<double, 2> near{};
+    for (const std::size_t k : {0U, 1U}) {
+      const std::optional<double> most = cut_end(tracer, curve, curve.ends[k], contact, points);
+      if (!most) return open(structure_.junctions[curve.ends[k]].at, points.front(), VoronoiDoubt::close);
+      near[k] = *most;
       std::reverse(points.begin(), points.end());
     }
     std::size_t budget = most_halvings_of_seam;
     for (std::size_t k = 1; k < points.size(); ++k) {
-      if (const auto piece = open_part(tracer, curve, contact, points[k - 1], points[k], budget)) {
+      const Piece part{
+          points[k - 1], points[k], {k == 1 ? near[0] : infinite, k + 1 == points.size() ? near[1] : infinite}};
+      if (const auto piece = open_part(tracer, curve, contact, part, budget)) {
         return open(piece->a, piece->b, VoronoiDoubt::close);
       }
     }
@@ -253,44 +309,47 @@ class Prover {
   }
 
   /// Cuts the first part of a seam, which lies in the ball of its first junction.
-  /// @return false if the seam near the junction is not proven.
-  [[nodiscard]] bool cut_end(const SeamTracer& tracer, const Curve& curve, std::uint32_t end, const Contact& contact,
-                             std::vector<Vec3d>& points) const {
-    if (balls_[end].is_point_of_seam) return true;
+  /// @return a distance: points of the seam within it of the first point that is left belong to the seam that ends at
+  ///         the junction. Nothing if the seam near the junction is not proven.
+  [[nodiscard]] std::optional<double> cut_end(const SeamTracer& tracer, const Curve& curve, std::uint32_t end,
+                                              const Contact& contact, std::vector<Vec3d>& points) const {
+    if (balls_[end].is_point_of_seam) return infinite;
     const Junction& junction = structure_.junctions[end];
     const bool is_vertex = junction.vertex != TracedStructure::none;
     const std::vector<Index>& own = curve.curve.sites;
     if (!is_vertex && !std::includes(junction.sites.begin(), junction.sites.end(), own.begin(), own.end())) {
-      return false;
+      return std::nullopt;
     }
     const double way = (balls_[end].is_proven ? share_of_ball : 1.0) * balls_[end].radius;
     std::size_t k = 1;
     while (k < points.size() && length(points[k] - junction.at) <= way) ++k;
-    if (k == points.size()) return !balls_[end].is_proven;
+    if (k == points.size()) return balls_[end].is_proven ? std::nullopt : std::optional(infinite);
     const Vec3d step = points[k] - points[k - 1];
     const double inside = length(points[k - 1] - junction.at), beyond = length(points[k] - junction.at);
     const Vec3d guess = points[k - 1] + step * std::min((way - inside) / (beyond - inside), 0.999);
     const auto cut = tracer.point_in_plane(curve.curve, guess, unit(step));
-    if (!cut || !(length(*cut - junction.at) <= 1.1 * way)) return false;
+    if (!cut || !(length(*cut - junction.at) <= 1.1 * way)) return std::nullopt;
     points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(k) - 1);
     points.front() = *cut;
-    return !is_vertex || is_ray_of_cone(contact, junction.at, *cut, junction.vertex);
+    if (is_vertex) return ray_of_cone(contact, junction.at, *cut, junction.vertex);
+    return balls_[end].is_proven ? share_beside_cut * balls_[end].radius : infinite;
   }
 
-  /// Returns true if the ray from a vertex of the polyhedron through a point is near exactly one seam.
-  [[nodiscard]] bool is_ray_of_cone(const Contact& contact, const Vec3d& apex, const Vec3d& at,
-                                    std::uint32_t vertex) const {
+  /// Returns a distance if the ray from a vertex of the polyhedron through a point is near exactly one seam: points of
+  /// seams within this distance of the point are on this seam.
+  [[nodiscard]] std::optional<double> ray_of_cone(const Contact& contact, const Vec3d& apex, const Vec3d& at,
+                                                  std::uint32_t vertex) const {
     const double way = length(at - apex);
     Tube section{at, unit(at - apex), 0, 0.05 * way};
-    if (!contact.is_at_vertex(vertex)) return false;
+    if (!contact.is_at_vertex(vertex)) return std::nullopt;
     constexpr int most_halvings = 20;
     for (int h = 0; h < most_halvings; ++h, section.radius *= 0.5) {
       if (distance_from_axis(contact, section) && contact.are_inside_domains(section) &&
           contact.are_closest(section, tree_)) {
-        return true;
+        return 0.5 * section.radius;
       }
     }
-    return false;
+    return std::nullopt;
   }
 
   /// Returns a bound on the distance of a curve with these closest sites from a tube's axis. Returns nothing unless
@@ -323,34 +382,37 @@ class Prover {
   /// Returns the first part of a piece that is not proven.
   /// @param budget  how often pieces may be halved.
   [[nodiscard]] std::optional<Piece> open_part(const SeamTracer& tracer, const Curve& curve, const Contact& contact,
-                                               const Vec3d& a, const Vec3d& b, std::size_t& budget) const {
+                                               const Piece& piece, std::size_t& budget) const {
+    const auto& [a, b, near] = piece;
     const double size = length(b - a);
     if (!(size > 0)) return std::nullopt;
     const std::optional<Tube> tube = tube_around(contact, a, b);
-    if (tube && is_at_ends(contact, *tube, a, b) && contact.are_inside_domains(*tube) &&
+    if (tube && is_at_ends(contact, *tube, piece) && contact.are_inside_domains(*tube) &&
         contact.are_closest(*tube, tree_)) {
       return std::nullopt;
     }
     const Vec3d centre = (a + b) * 0.5;
     const bool is_small = size <= 64 * std::max(sites_.tolerance(), bounds_.corner_error());
-    if (is_small || budget == 0) return Piece{a, b};
+    if (is_small || budget == 0) return piece;
     --budget;
     const auto middle = tracer.point_in_plane(curve.curve, centre, (b - a) / size);
-    if (!middle || !(length(*middle - centre) < 0.5 * size)) return Piece{a, b};
-    if (const auto open = open_part(tracer, curve, contact, a, *middle, budget)) return open;
-    return open_part(tracer, curve, contact, *middle, b, budget);
+    if (!middle || !(length(*middle - centre) < 0.5 * size)) return piece;
+    if (const auto open = open_part(tracer, curve, contact, {a, *middle, {near[0], infinite}}, budget)) return open;
+    return open_part(tracer, curve, contact, {*middle, b, {infinite, near[1]}}, budget);
   }
 
   /// Returns true if the curve in a tube passes close to both ends of its axis. Then the curves of successive tubes are
   /// one.
-  [[nodiscard]] static bool is_at_ends(const Contact& contact, const Tube& tube, const Vec3d& a, const Vec3d& b) {
-    for (const Vec3d& end : {a, b}) {
+  [[nodiscard]] static bool is_at_ends(const Contact& contact, const Tube& tube, const Piece& piece) {
+    for (const std::size_t k : {0U, 1U}) {
+      const Vec3d& end = k == 0 ? piece.a : piece.b;
+      const double most = std::min(0.25 * tube.radius, piece.near[k]);
       const std::vector<LinearBound> f = contact.equations(end, tube.radius);
       const Inverse inverse = inverse_across(f, tube.along);
       const double turn = inverse.norm * errors_of(f, tube.radius).slope;
       const std::array values{f[0].value.value, f[1].value.value};
       const double away = length(inverse.times(values)) + inverse.norm * errors_of(f, 0).value;
-      if (!(turn < 0.5 && away <= 0.25 * (1 - turn) * tube.radius)) return false;
+      if (!(turn < 0.5 && away <= (1 - turn) * most)) return false;
     }
     return true;
   }
@@ -363,6 +425,7 @@ class Prover {
   const Bvh tree_;
   std::vector<std::vector<std::uint32_t>> triangles_at_;  ///< of each vertex of the mesh
   std::vector<std::size_t> ends_;                         ///< of seams at each junction
+  std::vector<std::vector<std::uint32_t>> seams_at_;      ///< each junction; a closed one twice
   std::vector<KnownBall> balls_;                          ///< of each junction
   StructureProof out_;
 };
