@@ -52,8 +52,8 @@ class Contact {
   /// unknown.
   /// @param at  the point.
   [[nodiscard]] std::size_t degree(const Vec3d& at) const;
-  /// Returns true if the domains of each group meet as they do below one footprint, and the planes of mirrors that
-  /// imply equations are those in which sites have the same distance near a point. If not, equations may be wrong.
+  /// Returns false if the equations may be wrong. Then a group has more members than share a footprint, or sites of a
+  /// mirror have the same distance near a point in another plane.
   [[nodiscard]] bool is_regular(const Vec3d& at) const;
   /// Returns true if a vertex of the mesh belongs to all members.
   [[nodiscard]] bool is_at_vertex(std::uint32_t vertex) const;
