@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -333,14 +332,15 @@ std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site
 
 std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                       double radius, const std::vector<Room>& near) const {
-  std::vector<std::uint32_t> common = sites_[curve.sites[0]].vertices;
-  for (std::size_t k = 1; k < curve.sites.size() && !common.empty(); ++k) {
-    std::vector<std::uint32_t> both;
-    const std::vector<std::uint32_t>& own = sites_[curve.sites[k]].vertices;
-    std::set_intersection(common.begin(), common.end(), own.begin(), own.end(), std::back_inserter(both));
-    common = std::move(both);
-  }
-  for (const std::uint32_t v : common) {
+  // The site with the fewest vertices comes first: large faces have thousands.
+  const auto vertices_of = [&](Index i) -> const std::vector<std::uint32_t>& { return sites_[i].vertices; };
+  const Index least = *std::min_element(curve.sites.begin(), curve.sites.end(), [&](Index a, Index b) {
+    return vertices_of(a).size() < vertices_of(b).size();
+  });
+  for (const std::uint32_t v : vertices_of(least)) {
+    if (!std::all_of(curve.sites.begin(), curve.sites.end(), [&](Index i) { return contains(vertices_of(i), v); })) {
+      continue;
+    }
     const Vec3d way = sites_.vertices()[v] - x;
     const double size = length(way);
     // All surfaces of the curve are cones with the vertex as their apex, so it is straight.
@@ -460,14 +460,11 @@ std::optional<Vec3d> SeamTracer::meeting_point(const TracedCurve& curve, const V
 void SeamTracer::end_at_border(Trace& trace) const {
   trace.end = TraceEnd::border;
   constexpr double close = 1024;
-  const Vec3d& end = trace.points.back();
-  for (std::uint32_t v = 0; v < sites_.vertices().size(); ++v) {
-    if (length(sites_.vertices()[v] - end) > close * sites_.tolerance()) continue;
-    trace.end = TraceEnd::vertex;
-    trace.vertex = v;
-    trace.points.back() = sites_.vertices()[v];
-    return;
-  }
+  const auto v = sites_.vertex_near(trace.points.back(), close * sites_.tolerance());
+  if (!v) return;
+  trace.end = TraceEnd::vertex;
+  trace.vertex = *v;
+  trace.points.back() = sites_.vertices()[*v];
 }
 
 /// A trace in progress.

@@ -116,6 +116,9 @@ class SiteFinder {
       boxes.push_back(site.box);
     }
     out_.boxes_.emplace(boxes);
+    boxes.assign(out_.vertices_.size(), {});
+    for (std::size_t v = 0; v < boxes.size(); ++v) boxes[v].extend(out_.vertices_[v]);
+    out_.vertex_boxes_.emplace(boxes);
     return std::move(out_);
   }
 
@@ -492,6 +495,20 @@ bool TracedSites::leads_inside(Index i, const std::vector<const DomainSide*>& si
   // Seen from inside, the boundary runs clockwise.
   if (turn < 0) return is_inside(sides[0]) && is_inside(sides[1]);
   return is_inside(sides[0]) || is_inside(sides[1]);
+}
+
+std::optional<std::uint32_t> TracedSites::vertex_near(const Vec3d& x, double distance) const {
+  std::optional<std::uint32_t> best;
+  double least = distance * distance;
+  vertex_boxes_->for_each_near(x, distance, [&](std::uint32_t v) {
+    const double away = squared_length(vertices_[v] - x);
+    if (away < least || (away == least && (!best || v < *best))) {
+      least = away;
+      best = v;
+    }
+    return std::sqrt(least);
+  });
+  return best;
 }
 
 TracedSites::Closest TracedSites::closest_within(const Vec3d& x, double tolerance, double limit) const {

@@ -166,6 +166,8 @@ class TracedSites {
   /// @param guess  of the radius. The search is fast if the radius is at most this value, and not much smaller.
   [[nodiscard]] Closest closest(const Vec3d& x, double tolerance,
                                 double guess = std::numeric_limits<double>::infinity()) const;
+  /// Returns the closest vertex of the mesh within a distance of x.
+  [[nodiscard]] std::optional<std::uint32_t> vertex_near(const Vec3d& x, double distance) const;
   /// Calls visit(site) for each site whose box is within a distance of x.
   template <class Visit>
   void for_each_within(const Vec3d& x, double distance, const Visit& visit) const {
@@ -185,6 +187,7 @@ class TracedSites {
   std::vector<Vec3d> vertices_;
   std::vector<Index> face_of_;
   std::optional<BoxBvh> boxes_;
+  std::optional<BoxBvh> vertex_boxes_;  ///< a point for each vertex
   Vec3d origin_;
   double extent_ = 0;
   TracePrecision precision_;

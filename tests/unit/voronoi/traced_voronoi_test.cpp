@@ -382,6 +382,29 @@ TEST(TracedSites, FindSidesOfLargeFacesLikeASearchOfAllSides) {
   EXPECT_GT(outside, 100U);
 }
 
+TEST(TracedSites, FindTheNearestVertexLikeASearchOfAll) {
+  const TracedSites sites = sites_of(make_bracket());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::size_t found = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double a = number(random);
+    const double b = number(random);
+    const double c = number(random);
+    const Vec3d x{a, b, c};
+    double least = sites.extent();
+    for (const Vec3d& p : sites.vertices()) least = std::min(least, length(p - x));
+    constexpr double within = 0.3;
+    const auto v = sites.vertex_near(x, within);
+    EXPECT_EQ(v.has_value(), least <= within);
+    if (!v) continue;
+    EXPECT_EQ(length(sites.vertices()[*v] - x), least);
+    ++found;
+  }
+  EXPECT_GT(found, 10U);
+  EXPECT_LT(found, 250U);
+}
+
 /// Around the middle line of a square bar, four regions meet along one seam.
 TEST(LocalStar, FindsASeamOfFourRegions) {
   const TracedSites sites = sites_of(prism({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, 10));
