@@ -224,6 +224,7 @@ struct VoronoiReport {
   std::size_t proven_junctions = 0;
   std::size_t proven_seams = 0;
   /// If traced: places where the proof did not succeed. Each other junction is proven. A seam is open at one place.
+  /// Reflex vertices whose regions are thinner than 1e-7 of their lengths, and left out, are also open.
   std::vector<OpenVoronoiPlace> open;
   std::string trace_problem;  ///< If tracing failed: the reason and the place.
   BettiNumbers expected{};    ///< Betti numbers that the requested part of the exact diagram has.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -254,8 +255,24 @@ class SiteFinder {
         const auto [a, b] = out_.edges_[k].vertices;
         directions.push_back(unit(out_.vertices_[a == v ? b : a] - out_.vertices_[v]));
       }
+      const std::size_t before = out_.sites_.size();
       add_vertex(v, list, directions);
+      if (out_.sites_.size() == before && is_reflex(v) && !continues_an_edge(list)) out_.left_out_.push_back(v);
     }
+  }
+
+  [[nodiscard]] bool is_reflex(std::uint32_t v) const {
+    return std::binary_search(sites_.reflex_vertices.begin(), sites_.reflex_vertices.end(), v);
+  }
+
+  /// Returns true if two of some edges lie between the same faces, so that they are on one line.
+  [[nodiscard]] bool continues_an_edge(const std::vector<std::uint32_t>& edges) const {
+    std::set<std::array<Index, 2>> pairs;
+    return std::any_of(edges.begin(), edges.end(), [&](std::uint32_t k) {
+      std::array<Index, 2> faces = out_.edges_[k].faces;
+      if (faces[0] > faces[1]) std::swap(faces[0], faces[1]);
+      return !pairs.insert(faces).second;
+    });
   }
 
   void add_vertex(std::uint32_t v, const std::vector<std::uint32_t>& list, const std::vector<Vec3d>& directions) {

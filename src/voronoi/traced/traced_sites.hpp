@@ -93,6 +93,8 @@ class TracedSites {
   [[nodiscard]] const std::vector<Vec3d>& vertices() const { return vertices_; }
   [[nodiscard]] std::size_t count(SiteKind kind) const;
   [[nodiscard]] std::size_t face_count() const { return count(SiteKind::face); }
+  /// Returns reflex vertices that are not sites, since the cone of their region is thinner than rounding.
+  [[nodiscard]] const std::vector<std::uint32_t>& left_out() const { return left_out_; }
   /// Returns the number of holes in all faces together.
   [[nodiscard]] std::size_t hole_count() const;
   /// Returns the face of each triangle of the mesh.
@@ -186,6 +188,7 @@ class TracedSites {
   std::vector<BorderEdge> edges_;
   std::vector<Vec3d> vertices_;
   std::vector<Index> face_of_;
+  std::vector<std::uint32_t> left_out_;
   std::optional<BoxBvh> boxes_;
   std::optional<BoxBvh> vertex_boxes_;  ///< a point for each vertex
   Vec3d origin_;

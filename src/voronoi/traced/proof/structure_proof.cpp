@@ -113,10 +113,23 @@ class Prover {
     count_ends();
     prove_junctions();
     prove_seams();
+    list_left_out();
     return std::move(out_);
   }
 
  private:
+  /// Lists vertices whose regions are not part of the diagram. Their widths are below 1e-7 of their lengths.
+  void list_left_out() {
+    constexpr double width = 1e-7;
+    for (const std::uint32_t v : sites_.left_out()) {
+      OpenPlace& place = out_.open.emplace_back();
+      place = {sites_.vertices()[v], width * sites_.extent(), {}, VoronoiDoubt::close};
+      for (Index i = 0; i < sites_.size(); ++i) {
+        if (std::binary_search(sites_[i].vertices.begin(), sites_[i].vertices.end(), v)) place.sites.push_back(i);
+      }
+    }
+  }
+
   void count_ends() {
     ends_.assign(structure_.junctions.size(), 0);
     seams_at_.resize(structure_.junctions.size());
@@ -335,7 +348,7 @@ class Prover {
     return balls_[end].is_proven ? share_beside_cut * balls_[end].radius : infinite;
   }
 
-  /// Returns a distance if the ray from a vertex of the polyhedron through a point is near exactly one seam: points of
+  /// Returns a distance if the ray from a vertex of the polyhedron through a point is near exactly one seam. Points of
   /// seams within this distance of the point are on this seam.
   [[nodiscard]] std::optional<double> ray_of_cone(const Contact& contact, const Vec3d& apex, const Vec3d& at,
                                                   std::uint32_t vertex) const {
