@@ -40,22 +40,27 @@ std::vector<VoronoiSite> sites_of(const MeshView& mesh, JoinedFaces joined, cons
   return voronoi_sites(mesh, report, context);
 }
 
-/// Sites of a complex as patches, if Python gives a patch angle.
+/// Sites of a complex as patches.
 struct Joining {
   const MeshView& mesh;
   JoinedFaces joined;
-  std::optional<double> patch_angle;  ///< degrees
+  VoronoiPatchOptions options;
 };
 
 std::vector<VoronoiPatch> patches_of(const Joining& how, const Context& context) {
-  VoronoiPatchOptions options;
-  if (how.patch_angle) options.patch_angle = *how.patch_angle;
-  return voronoi_patches(how.mesh, sites_of(how.mesh, how.joined, context), options, context);
+  return voronoi_patches(how.mesh, sites_of(how.mesh, how.joined, context), how.options, context);
 }
 
-VoronoiGraph graph_of(const Complex& complex, const Joining& how, const Context& context) {
-  if (!how.patch_angle) return voronoi_graph(complex, context);
-  return voronoi_graph(complex, patches_of(how, context), context);
+/// @param patches  options of the patches; None in Python if the graph is that of the sites.
+VoronoiGraph graph_of(const Complex& complex, const MeshView& mesh, const JoinedFaces& joined,
+                      const std::optional<VoronoiPatchOptions>& patches, const Context& context) {
+  if (!patches) return voronoi_graph(complex, context);
+  return voronoi_graph(complex, patches_of({mesh, joined, *patches}, context), context);
+}
+
+std::optional<VoronoiPatchOptions> patch_options(const std::optional<nb::dict>& given) {
+  if (!given) return std::nullopt;
+  return options_from<VoronoiPatchOptions>(*given);
 }
 
 }  // namespace
@@ -95,50 +100,55 @@ void bind_voronoi(nb::module_& m) {
   bind_struct<VoronoiWall>(m);
   bind_struct<VoronoiSeam>(m);
   bind_struct<VoronoiJunction>(m);
+  bind_options<VoronoiPatchOptions>(m);
   bind_struct<VoronoiPatch>(m);
   bind_struct<VoronoiGraph>(m);
   m.def(
       "voronoi_patches",
-      [](const MeshArrays& mesh, const JoinedFaces& joined, double patch_angle) {
+      [](const MeshArrays& mesh, const JoinedFaces& joined, const nb::dict& given) {
         nb::list out;
         const MeshView view = mesh.view();
-        const auto found = run(
-            {0, nb::none()}, [&](const Context& context) { return patches_of({view, joined, patch_angle}, context); });
+        const auto options = options_from<VoronoiPatchOptions>(given);
+        const auto found =
+            run({0, nb::none()}, [&](const Context& context) { return patches_of({view, joined, options}, context); });
         for (const VoronoiPatch& patch : found) out.append(to_python(patch));
         return out;
       },
-      nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle"));
+      nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("options"));
   m.def(
       "with_patches",
-      [](const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined, double patch_angle) {
+      [](const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined, const nb::dict& given) {
         Complex out = complex;
         const MeshView view = mesh.view();
-        run_call({0, nb::none()}, [&](const Context& context) {
-          add_patch_columns(out, patches_of({view, joined, patch_angle}, context));
-        });
+        const auto options = options_from<VoronoiPatchOptions>(given);
+        run_call({0, nb::none()},
+                 [&](const Context& context) { add_patch_columns(out, patches_of({view, joined, options}, context)); });
         return out;
       },
-      nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle"));
+      nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("options"));
   m.def(
       "voronoi_graph",
-      [](const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined, std::optional<double> patch_angle) {
+      [](const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined,
+         const std::optional<nb::dict>& given) {
         const MeshView view = mesh.view();
+        const auto options = patch_options(given);
         return result_of(run({0, nb::none()}, [&](const Context& context) {
-          return graph_of(complex, {view, joined, patch_angle}, context);
+          return graph_of(complex, view, joined, options, context);
         }));
       },
-      nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle").none());
+      nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("options").none());
   m.def(
       "write_voronoi_graph",
       [](const std::filesystem::path& path, const Complex& complex, const MeshArrays& mesh, const JoinedFaces& joined,
-         std::optional<double> patch_angle, const std::vector<std::pair<std::string, std::string>>& metadata) {
+         const std::optional<nb::dict>& given, const std::vector<std::pair<std::string, std::string>>& metadata) {
         const MeshView view = mesh.view();
+        const auto options = patch_options(given);
         run_call({0, nb::none()}, [&](const Context& context) {
-          const VoronoiGraph graph = graph_of(complex, {view, joined, patch_angle}, context);
+          const VoronoiGraph graph = graph_of(complex, view, joined, options, context);
           write_voronoi_graph(path, graph, sites_of(view, joined, context), metadata);
         });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("patch_angle").none(),
+      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("joined_faces"), nb::arg("options").none(),
       nb::arg("metadata"));
   using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;
   m.def(

@@ -111,7 +111,7 @@ class VoronoiComplex(Complex):
             raise InvalidOption(f'regions need walls and surface: part="all", not "{self.part}"')
         return ShortList(_core.voronoi_regions(self._core))
 
-    def patches(self, patch_angle: Real = 30.0) -> list[VoronoiPatch]:
+    def patches(self, patch_angle: Real = 30.0, *, patch_fit: Real | None = None) -> list[VoronoiPatch]:
         """Returns the patches of the sites: each is a smooth part of the surface, whose sites may count as one.
 
         Each has `kind` ("face", "edge" or "vertex") and `sites`. A patch of faces contains the reflex edges and
@@ -121,6 +121,9 @@ class VoronoiComplex(Complex):
         ----------
         patch_angle : float
             Degrees, 0 to 180. The largest bend at an edge between two faces of one patch.
+        patch_fit : float, optional
+            Mesh units, above 0. If given, patches of faces are parts of planes, spheres, cylinders and cones, with all
+            vertices at most this far from their `shape`. Flat faces that fit no other shape are planes.
 
         Examples
         --------
@@ -128,16 +131,19 @@ class VoronoiComplex(Complex):
         >>> found = blum.voronoi_complex(blum.generate("cylinder", sides=48))
         >>> len(found.sites()), len(found.patches())
         (50, 3)
+        >>> side = found.patches(patch_fit=1e-6)[0].shape
+        >>> side.kind, side.radius
+        ('cylinder', 1.0)
         """
-        angle = number(patch_angle, "patch_angle")
-        return ShortList(_core.voronoi_patches(self._mesh._arrays, self.report.joined_faces, angle))
+        options = _patch_options(patch_angle, patch_fit)
+        return ShortList(_core.voronoi_patches(self._mesh._arrays, self.report.joined_faces, options))
 
-    def with_patches(self, patch_angle: Real = 30.0) -> VoronoiComplex:
+    def with_patches(self, patch_angle: Real = 30.0, *, patch_fit: Real | None = None) -> VoronoiComplex:
         """Returns this complex with the patches on both sides of each triangle, as columns `patch_a` and `patch_b`.
 
-        The numbers are those of :meth:`patches`, the smaller one first. `patch_a` is -1 on the surface. Inside a patch,
-        both are equal. The axis from :meth:`medial_axis` keeps these columns, and has sheets of patches as a column
-        `patch_sheet`. Its `graph(of_patches=True)` then has these sheets.
+        The numbers are those of :meth:`patches` for the same arguments, the smaller one first. `patch_a` is -1 on the
+        surface. Inside a patch, both are equal. The axis from :meth:`medial_axis` keeps these columns, and has sheets
+        of patches as a column `patch_sheet`. Its `graph(of_patches=True)` then has these sheets.
 
         Examples
         --------
@@ -147,11 +153,11 @@ class VoronoiComplex(Complex):
         >>> [sheet.sides for sheet in axis.graph(of_patches=True).sheets]
         [(0, 1), (1, 2)]
         """
-        angle = number(patch_angle, "patch_angle")
-        core = _core.with_patches(self._core, self._mesh._arrays, self.report.joined_faces, angle)
+        options = _patch_options(patch_angle, patch_fit)
+        core = _core.with_patches(self._core, self._mesh._arrays, self.report.joined_faces, options)
         return VoronoiComplex._of(core, self.report, self.part, self._mesh)
 
-    def graph(self, patch_angle: Real | None = None) -> VoronoiGraph:
+    def graph(self, patch_angle: Real | None = None, *, patch_fit: Real | None = None) -> VoronoiGraph:
         """Returns the regions (for `part="all"`), walls, seams and junctions, and their connections.
 
         `.to_networkx(sites)` converts the graph.
@@ -161,6 +167,8 @@ class VoronoiComplex(Complex):
         patch_angle : float, optional
             If given, the graph is that of the :meth:`patches`, listed in its `patches`. All numbers of sites in it are
             then numbers of patches.
+        patch_fit : float, optional
+            If given, patches are those of fitted shapes, also listed in `patches`. The angle is 30 by default.
 
         Examples
         --------
@@ -171,7 +179,7 @@ class VoronoiComplex(Complex):
         (6, 13, 12, 12)
         """
         found: VoronoiGraph = _core.voronoi_graph(
-            self._core, self._mesh._arrays, self.report.joined_faces, _angle(patch_angle)
+            self._core, self._mesh._arrays, self.report.joined_faces, _given_patches(patch_angle, patch_fit)
         )
         return found
 
@@ -249,7 +257,7 @@ class VoronoiComplex(Complex):
         core = self._core if self.report.certified else self.with_failing_cells()._core
         _core.write_complex(Path(os.fspath(path)), core, list(self._metadata().items()), [], True)
 
-    def write_graph(self, path: PathLike, *, patch_angle: Real | None = None) -> None:
+    def write_graph(self, path: PathLike, *, patch_angle: Real | None = None, patch_fit: Real | None = None) -> None:
         """Writes :meth:`graph` with the sites to .json or .graphml, and records whether the diagram is certified.
 
         .json holds everything. .graphml holds nodes and edges with numbers, for networkx, Gephi, igraph and yEd. The
@@ -268,7 +276,7 @@ class VoronoiComplex(Complex):
             self._core,
             self._mesh._arrays,
             self.report.joined_faces,
-            _angle(patch_angle),
+            _given_patches(patch_angle, patch_fit),
             list(self._metadata().items()),
         )
 
@@ -288,8 +296,16 @@ def _restored(arguments: tuple[Any, ...], report: VoronoiReport, part: str, mesh
     return VoronoiComplex._of(_core.Complex(*arguments), report, part, mesh)
 
 
-def _angle(patch_angle: Real | None) -> float | None:
-    return None if patch_angle is None else number(patch_angle, "patch_angle")
+def _patch_options(patch_angle: Real, patch_fit: Real | None) -> dict[str, float]:
+    options = {"patch_angle": number(patch_angle, "patch_angle")}
+    return options if patch_fit is None else options | {"patch_fit": number(patch_fit, "patch_fit")}
+
+
+def _given_patches(patch_angle: Real | None, patch_fit: Real | None) -> dict[str, float] | None:
+    """Returns the options of patches, or None without both arguments."""
+    if patch_angle is None and patch_fit is None:
+        return None
+    return _patch_options(30.0 if patch_angle is None else patch_angle, patch_fit)
 
 
 def to_networkx(graph: VoronoiGraph, sites: Sequence[VoronoiSite] = ()) -> Any:

@@ -14,6 +14,7 @@
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/check_angle.hpp"
 #include "blum/core/sort_unique.hpp"
+#include "blum/geometry/fitted_patches.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/surface_patches.hpp"
 
@@ -173,10 +174,30 @@ std::vector<std::uint32_t> patches_at(const SurfacePatches& patches, SiteId site
                       ": the axis belongs to another mesh, or to the same mesh welded differently");
 }
 
-std::vector<AxisPatch> listed(const SurfacePatches& patches) {
+/// Patches of a mesh, and the shape of each of them if shapes were fitted.
+struct MeshPatches {
+  SurfacePatches surface;
+  std::vector<SurfaceShape> shapes = {};
+};
+
+MeshPatches patches_of(const MeshView& mesh, const AxisGraphOptions& options, const Context& context) {
+  if (!options.patch_fit) return {SurfacePatches(mesh, options.patch_angle, context)};
+  validate(mesh);
+  const SiteTable sites(mesh, context);
+  std::vector<Vec3d> normals = detail::triangle_normals(mesh);
+  const SurfacePatches flat(mesh, sites, normals, 0, context);
+  std::vector<std::uint32_t> face_of;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) face_of.push_back(flat.of_face(t));
+  detail::FittedPatches fitted =
+      detail::fit_patches(mesh, sites, {face_of, normals, *options.patch_fit, options.patch_angle}, context);
+  return {SurfacePatches(mesh, sites, std::move(normals), std::move(fitted.patch_of)), std::move(fitted.shapes)};
+}
+
+std::vector<AxisPatch> listed(const MeshPatches& patches) {
   std::vector<AxisPatch> out;
-  for (const detail::SurfacePatch& one : patches.patches()) {
-    out.push_back({one.faces, one.area, one.centroid, one.normal});
+  for (const detail::SurfacePatch& one : patches.surface.patches()) {
+    out.push_back({one.faces, one.area, one.centroid, one.normal, {}});
+    if (!patches.shapes.empty()) out.back().shape = patches.shapes[out.size() - 1];
   }
   return out;
 }
@@ -241,7 +262,7 @@ class PatchPairs {
   std::vector<std::map<std::pair<std::uint32_t, std::uint32_t>, double>> areas_;  ///< for each sheet, by pair
 };
 
-AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const AxisGraphOptions& options,
+AxisGraph graph_of(const Complex& axis, const MeshPatches* patches, const AxisGraphOptions& options,
                    const Context& context) {
   check_angle("homotopy_angle", options.homotopy_angle.value_or(0));
   check_needed(axis);
@@ -258,7 +279,7 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Axi
   add_sheets(parts, walker.line_of_edge(), options.homotopy_angle, graph);
   if (patches != nullptr) {
     graph.patches = listed(*patches);
-    PatchPairs(parts, *patches, graph).add();
+    PatchPairs(parts, patches->surface, graph).add();
   }
   if (between_patches) between_patches->complete(graph);
   return graph;
@@ -273,7 +294,8 @@ AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options, const
 AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options,
                      const Context& context) {
   check_angle("patch_angle", options.patch_angle);
-  const SurfacePatches patches(mesh, options.patch_angle, context);
+  detail::check_patch_fit(options.patch_fit);
+  const MeshPatches patches = patches_of(mesh, options, context);
   return graph_of(axis, &patches, options, context);
 }
 

@@ -25,8 +25,9 @@ bool runs_along(const Triangle& triangle, const Segment& edge) {
   return false;
 }
 
-/// Returns the normals of all triangles. Their lengths are twice the areas.
-std::vector<Vec3d> normals_of(const MeshView& mesh) {
+}  // namespace
+
+std::vector<Vec3d> triangle_normals(const MeshView& mesh) {
   std::vector<Vec3d> out;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3d& at = mesh.vertices[a];
@@ -35,19 +36,54 @@ std::vector<Vec3d> normals_of(const MeshView& mesh) {
   return out;
 }
 
-}  // namespace
+std::vector<std::uint8_t> smooth_edges(const MeshView& mesh, const SiteTable& sites, std::span<const Vec3d> normals,
+                                       double angle) {
+  const double least_cosine = std::cos(std::min(180.0, angle + rounding) * std::numbers::pi / 180);
+  struct Sides {
+    std::uint32_t first = 0, second = 0, count = 0;
+  };
+  std::vector<Sides> sides(sites.edge_count());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const EdgeId edge : sites.triangle_edges()[t]) {
+      if (edge == EdgeId::none()) continue;
+      Sides& own = sides[edge.value];
+      (own.count == 0 ? own.first : own.second) = t;
+      ++own.count;
+    }
+  }
+  std::vector<std::uint8_t> out(sides.size(), 0);
+  for (std::size_t e = 0; e < sides.size(); ++e) {
+    const auto& [a, b, count] = sides[e];
+    const double scale = length(normals[a]) * length(normals[b]);
+    if (count != 2 || !(scale > 0)) continue;
+    const Segment& ends = sites.edges()[e];
+    const bool agree = runs_along(mesh.triangles[a], ends) != runs_along(mesh.triangles[b], ends);
+    out[e] = (agree ? 1 : -1) * dot(normals[a], normals[b]) >= least_cosine * scale ? 1 : 0;
+  }
+  return out;
+}
 
 SurfacePatches::SurfacePatches(const MeshView& mesh, double angle, const Context& context)
     : SurfacePatches((validate(mesh), mesh), SiteTable(mesh, context), angle, context) {}
 
 SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context)
-    : SurfacePatches(mesh, std::move(sites), normals_of(mesh), angle, context) {}
+    : SurfacePatches(mesh, std::move(sites), triangle_normals(mesh), angle, context) {}
 
 SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals, double angle,
                                const Context& context)
     : mesh_(mesh), sites_(std::move(sites)), normals_(std::move(normals)) {
   find_rows();
   join_faces(angle, context);
+  add_up();
+}
+
+SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals,
+                               std::vector<std::uint32_t> patch_of)
+    : mesh_(mesh), sites_(std::move(sites)), normals_(std::move(normals)), patch_of_(std::move(patch_of)) {
+  find_rows();
+  for (const std::uint32_t patch : patch_of_) {
+    if (patch != none && patch >= patches_.size()) patches_.resize(patch + std::size_t{1});
+  }
   add_up();
 }
 
@@ -74,25 +110,14 @@ void SurfacePatches::find_rows() {
   });
 }
 
-bool SurfacePatches::is_smooth(std::uint32_t edge, double least_cosine) const {
-  const std::size_t begin = at_edges_.first[edge];
-  if (at_edges_.first[edge + 1] - begin != 2) return false;
-  const std::uint32_t a = at_edges_.triangles[begin];
-  const std::uint32_t b = at_edges_.triangles[begin + 1];
-  const double scale = length(normals_[a]) * length(normals_[b]);
-  if (!(scale > 0)) return false;
-  const Segment& ends = sites_.edges()[edge];
-  const bool agree = runs_along(mesh_.triangles[a], ends) != runs_along(mesh_.triangles[b], ends);
-  return (agree ? 1 : -1) * dot(normals_[a], normals_[b]) >= least_cosine * scale;
-}
-
 void SurfacePatches::join_faces(double angle, const Context& context) {
-  const double least_cosine = std::cos(std::min(180.0, angle + rounding) * std::numbers::pi / 180);
+  throw_if_cancelled(context);
+  const std::vector<std::uint8_t> is_smooth = smooth_edges(mesh_, sites_, normals_, angle);
+  throw_if_cancelled(context);
   detail::UnionFind faces(mesh_.triangles.size());
   for (std::uint32_t e = 0; e < sites_.edge_count(); ++e) {
-    if (e % 65536 == 0) throw_if_cancelled(context);
     const std::size_t begin = at_edges_.first[e];
-    if (is_smooth(e, least_cosine)) faces.join(at_edges_.triangles[begin], at_edges_.triangles[begin + 1]);
+    if (is_smooth[e] != 0) faces.join(at_edges_.triangles[begin], at_edges_.triangles[begin + 1]);
   }
   patch_of_.assign(mesh_.triangles.size(), none);
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "blum/core/check_angle.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
+#include "blum/geometry/fitted_patches.hpp"
 #include "blum/geometry/surface_patches.hpp"
 #include "voronoi/site_patches.hpp"
 
@@ -65,12 +67,25 @@ std::vector<Vec3d> normals_of_faces(const MeshView& mesh, std::span<const Vorono
   return out;
 }
 
+/// Returns for each triangle the number of its face.
+std::vector<std::uint32_t> faces_of(const MeshView& mesh, std::span<const VoronoiSite> sites) {
+  std::vector<std::uint32_t> out(mesh.triangles.size(), none);
+  for (std::uint32_t s = 0; s < sites.size(); ++s) {
+    for (const std::uint32_t t : sites[s].triangles) out[t] = s;
+  }
+  return out;
+}
+
 class PatchFinder {
  public:
-  PatchFinder(const SiteTable& table, std::span<const VoronoiSite> sites, const SurfacePatches& surface)
+  /// @param shapes  for each patch of the surface; empty if shapes were not fitted.
+  PatchFinder(const SiteTable& table, std::span<const VoronoiSite> sites, const SurfacePatches& surface,
+              std::vector<SurfaceShape> shapes, std::vector<std::uint8_t> smooth)
       : table_(table),
         sites_(sites),
         surface_(surface),
+        shapes_(std::move(shapes)),
+        smooth_(std::move(smooth)),
         joined_(surface.patches().size()),
         number_(surface.patches().size(), none) {}
 
@@ -84,6 +99,8 @@ class PatchFinder {
       std::vector<std::uint32_t> around = patches_at(sites_[s]);
       if (around.size() == 1) {
         add_to(around.front(), s);
+      } else if (around.size() == 2 && is_smooth(sites_[s], around)) {
+        add_to(more_curved(around), s);
       } else {
         between_.emplace_back(s, std::move(around));
       }
@@ -103,7 +120,8 @@ class PatchFinder {
     std::uint32_t& patch = on_surface == SurfacePatches::none ? own : number_[joined_.find(on_surface)];
     if (patch == none) {
       patch = static_cast<std::uint32_t>(out_.size());
-      out_.push_back({SiteKind::face, {}});
+      out_.push_back({SiteKind::face, {}, {}});
+      if (on_surface < shapes_.size()) out_.back().shape = shapes_[on_surface];
     }
     add_to(patch, s);
   }
@@ -118,15 +136,35 @@ class PatchFinder {
     }
   }
 
+  /// Returns the number of an edge in the mesh.
+  [[nodiscard]] std::uint32_t edge_of(const VoronoiSite& site) const {
+    const Segment ends{site.vertices[0], site.vertices[1]};
+    const auto at = std::lower_bound(table_.edges().begin(), table_.edges().end(), ends);
+    if (at == table_.edges().end() || *at != ends) refuse_sites("an edge does not exist in the mesh");
+    return static_cast<std::uint32_t>(at - table_.edges().begin());
+  }
+
+  /// Returns true if two fitted patches meet smoothly at an edge, or at a vertex of such an edge. Edges come first.
+  [[nodiscard]] bool is_smooth(const VoronoiSite& site, const std::vector<std::uint32_t>& around) {
+    if (smooth_.empty()) return false;
+    const std::pair pair(around[0], around[1]);
+    if (site.kind == SiteKind::vertex) return smooth_pairs_.contains(pair);
+    if (smooth_[edge_of(site)] == 0) return false;
+    smooth_pairs_.insert(pair);
+    return true;
+  }
+  /// Returns the first of two patches that is not a plane; the first one if both are planes.
+  [[nodiscard]] std::uint32_t more_curved(const std::vector<std::uint32_t>& around) const {
+    const auto is_plane = [&](std::uint32_t patch) {
+      return out_[patch].shape && out_[patch].shape->kind == SurfaceKind::plane;
+    };
+    return is_plane(around[0]) && !is_plane(around[1]) ? around[1] : around[0];
+  }
+
   /// Returns the patches of the faces at an edge or a vertex, ascending.
   [[nodiscard]] std::vector<std::uint32_t> patches_at(const VoronoiSite& site) {
     Site on{SiteKind::vertex, site.vertices.front()};
-    if (site.kind == SiteKind::edge) {
-      const Segment ends{site.vertices[0], site.vertices[1]};
-      const auto at = std::lower_bound(table_.edges().begin(), table_.edges().end(), ends);
-      if (at == table_.edges().end() || *at != ends) refuse_sites("an edge does not exist in the mesh");
-      on = {SiteKind::edge, static_cast<std::uint32_t>(at - table_.edges().begin())};
-    }
+    if (site.kind == SiteKind::edge) on = {SiteKind::edge, edge_of(site)};
     std::vector<std::uint32_t> out;
     for (const std::uint32_t patch : surface_.at(table_.id(on))) out.push_back(number_[joined_.find(patch)]);
     detail::sort_unique(out);
@@ -149,7 +187,7 @@ class PatchFinder {
       std::uint32_t& patch = number[joined.find(k)];
       if (patch == none) {
         patch = static_cast<std::uint32_t>(out_.size());
-        out_.push_back({sites_[between_[k].first].kind, {}});
+        out_.push_back({sites_[between_[k].first].kind, {}, {}});
       }
       add_to(patch, between_[k].first);
     }
@@ -158,7 +196,10 @@ class PatchFinder {
   const SiteTable& table_;
   std::span<const VoronoiSite> sites_;
   const SurfacePatches& surface_;
-  detail::UnionFind joined_;           ///< patches of the surface
+  std::vector<SurfaceShape> shapes_;
+  std::vector<std::uint8_t> smooth_;                                ///< for each edge; empty without shapes
+  std::set<std::pair<std::uint32_t, std::uint32_t>> smooth_pairs_;  ///< patches with a smooth reflex edge between them
+  detail::UnionFind joined_;                                        ///< patches of the surface
   std::vector<std::uint32_t> number_;  ///< for each patch of the surface that joined_ keeps
   std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> between_;  ///< sites, and the patches around them
   std::vector<VoronoiPatch> out_;
@@ -169,11 +210,21 @@ class PatchFinder {
 std::vector<VoronoiPatch> voronoi_patches(const MeshView& mesh, std::span<const VoronoiSite> sites,
                                           const VoronoiPatchOptions& options, const Context& context) {
   detail::check_angle("patch_angle", options.patch_angle);
+  detail::check_patch_fit(options.patch_fit);
   validate(mesh);
   const SiteTable table(mesh, context);
   check_sites(mesh, table, sites);
-  const SurfacePatches surface(mesh, table, normals_of_faces(mesh, sites), options.patch_angle, context);
-  return PatchFinder(table, sites, surface).find();
+  std::vector<Vec3d> normals = normals_of_faces(mesh, sites);
+  if (!options.patch_fit) {
+    const SurfacePatches surface(mesh, table, std::move(normals), options.patch_angle, context);
+    return PatchFinder(table, sites, surface, {}, {}).find();
+  }
+  const std::vector<std::uint32_t> face_of = faces_of(mesh, sites);
+  detail::FittedPatches fitted =
+      detail::fit_patches(mesh, table, {face_of, normals, *options.patch_fit, options.patch_angle}, context);
+  std::vector<std::uint8_t> smooth = detail::smooth_edges(mesh, table, normals, options.patch_angle);
+  const SurfacePatches surface(mesh, table, std::move(normals), std::move(fitted.patch_of));
+  return PatchFinder(table, sites, surface, std::move(fitted.shapes), std::move(smooth)).find();
 }
 
 void add_patch_columns(Complex& complex, std::span<const VoronoiPatch> patches) {

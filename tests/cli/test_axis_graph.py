@@ -35,6 +35,15 @@ def test_the_graph_has_the_sheets_of_the_axis(solids, tmp_path):
     assert all(len(line["vertices"]) == len(line["points"]) for line in graph["seams"] + graph["curves"])
 
 
+def test_patches_of_the_graph_are_fitted_on_request(tmp_path):
+    run("make", "cylinder", "-o", tmp_path / "c.ply")
+    output = ("-o", tmp_path / "a.npz", "--resolution", 16)
+    run("medial", tmp_path / "c.ply", *output, "--graph", tmp_path / "g.json", "--patch-fit", 1e-6)
+    shapes = [patch["shape"] for patch in json.loads((tmp_path / "g.json").read_text())["patches"]]
+    assert sorted(shape["kind"] for shape in shapes) == ["cylinder", "plane", "plane"]
+    assert "--graph" in run("medial", tmp_path / "c.ply", *output, "--patch-fit", 1e-6, status=2)[1]
+
+
 def test_every_angle_and_label_has_its_own_graph(solids, tmp_path):
     output = ["-o", tmp_path / "b.ply", "--graph", tmp_path / "g.graphml"]
     out, _ = run("medial", solids / "balls.npy", *output, "--label", "1,3", "--theta", "30,90")

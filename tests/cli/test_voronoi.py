@@ -436,6 +436,30 @@ def test_graphs_of_patches(tmp_path):
     assert "--patch-angle" in run("voronoi", disc, "--patch-angle", 181, status=2)[1]
 
 
+def test_graphs_of_fitted_patches(tmp_path):
+    disc, axis = tmp_path / "disc.ply", tmp_path / "axis.npz"
+    run("make", "cylinder", "--sides", 48, "--height", 0.5, "--radius", 2, "-o", disc)
+    graph_of = ("--graph", tmp_path / "g.json", "--patch-fit", 1e-6)
+    found = run_json("voronoi", disc, "--walls", *graph_of)
+    assert found["graph"] == {"walls": 3, "seams": 1, "junctions": 0}
+    assert json.loads((tmp_path / "g.json").read_text())["patches"] == found["patches"]
+    shapes = [patch["shape"] for patch in found["patches"]]
+    assert sorted(shape["kind"] for shape in shapes) == ["cylinder", "plane", "plane"]
+    (side,) = (shape for shape in shapes if shape["kind"] == "cylinder")
+    assert abs(side["radius"] - 2) < 1e-9 and abs(abs(side["axis"][2]) - 1) < 1e-9 and side["deviation"] < 1e-9
+    assert "(2 planes, 1 cylinder)" in run("voronoi", disc, "--walls", *graph_of)[0]
+
+    found = run_json("voronoi", disc, "--medial", "--theta", 20, "-o", axis, *graph_of)
+    graph = json.loads((tmp_path / "g.json").read_text())
+    assert found["axis"]["graph"]["sheets"] == len(graph["sheets"]) == 3
+    assert [patch["shape"]["kind"] for patch in graph["patches"]] == [shape["kind"] for shape in shapes]
+    # Edges of this cylinder bend by 7.5 degrees.
+    found = run_json("voronoi", disc, "--walls", "--patch-angle", 7, "--patch-fit", 1e-6)
+    assert [patch["shape"]["kind"] for patch in found["patches"]] == ["plane"] * 50
+    for bad in (0, -1, "nan"):
+        assert "--patch-fit" in run("voronoi", disc, f"--patch-fit={bad}", status=2)[1]
+
+
 # ---- Cleaning ----
 
 

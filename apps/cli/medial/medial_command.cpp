@@ -52,7 +52,7 @@ Exit status 3: an axis is not certified. Only --allow-uncertified writes such an
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> theta, prune, decimate, threshold, weld, threads, graph, extend, extend_length;
+  std::optional<std::string> theta, prune, decimate, threshold, weld, threads, graph, patch_fit, extend, extend_length;
   OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
@@ -65,6 +65,7 @@ struct Request {
   fs::path input;
   fs::path output;
   std::optional<fs::path> graph;
+  std::optional<double> patch_fit;  ///< mesh units; if unset, bends alone decide on patches in the graph
   std::optional<fs::path> extend;
   ExtendOptions extending;
   MedialAxisOptions options;
@@ -102,6 +103,8 @@ Request parse(const Arguments& a) {
   check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::both));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   r.graph = parse_graph(a.graph);
+  if (a.patch_fit && !r.graph) throw UsageError("--patch-fit is for graphs; add --graph");
+  if (a.patch_fit) r.patch_fit = parse_positive("--patch-fit", *a.patch_fit);
   r.extend = parse_extend(a.extend);
   r.extending = parse_extend_length(a.extend_length, r.extend.has_value());
   exclude(a.options.has("resolution"), "--resolution", a.options.has("spacing"), "--spacing",
@@ -224,6 +227,7 @@ Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const 
   Stopwatch watch;
   AxisGraphOptions options;
   options.homotopy_angle = metadata.theta;
+  options.patch_fit = r.patch_fit;
   const AxisGraph graph = input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, options, context)
                                                         : axis_graph(complex, options, context);
   run.graphs.emplace_back(beside_axis(*r.graph, r.output, name));
@@ -529,6 +533,9 @@ void add_medial_command(const CommandLine& line) {
   command.add_flag("--smooth", a->smooth,
                    "Image: use the solid inside the smooth surface of the voxels, instead of the boxes of the voxels");
   add_graph_option(command, a->graph, "Also write the sheets, seams, curves and junctions of the axis as a graph");
+  add_text_option(command, "--patch-fit", a->patch_fit, "TOL",
+                  "Mesh: patches in the graph are planes, spheres, cylinders and cones whose vertices lie within TOL "
+                  "mesh units (default: smooth parts of the surface)");
   add_extend_options(command, a->extend, a->extend_length);
   command.add_flag("--nested", a->nested,
                    "Also store the axes of all angles from --theta upwards (.npz), for `blum view`");

@@ -30,6 +30,9 @@ void VoronoiAxisTexts::add_to(const Command& command) {
   add_text_option(command, "--patch-angle", patch_angle, "DEG",
                   "Join sites of smooth patches: faces that meet in edges bent by at most DEG degrees, 0 to 180 (30 "
                   "suits most meshes). The graph is that of the patches; files get columns patch_a and patch_b");
+  add_text_option(command, "--patch-fit", patch_fit, "TOL",
+                  "Patches are planes, spheres, cylinders and cones whose vertices lie within TOL mesh units. Edges "
+                  "inside them bend by at most --patch-angle (default 30)");
 }
 
 std::string VoronoiAxisTexts::given() const {
@@ -42,7 +45,9 @@ VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts) {
   if (texts.theta) out.theta = parse_angle("--theta", *texts.theta);
   if (texts.decimate) out.decimate = parse_non_negative("--decimate", *texts.decimate);
   out.graph = parse_graph(texts.graph);
-  if (texts.patch_angle) out.patch_angle = parse_angle("--patch-angle", *texts.patch_angle);
+  if (texts.patch_angle || texts.patch_fit) out.patches.emplace();
+  if (texts.patch_angle) out.patches->patch_angle = parse_angle("--patch-angle", *texts.patch_angle);
+  if (texts.patch_fit) out.patches->patch_fit = parse_positive("--patch-fit", *texts.patch_fit);
   return out;
 }
 
@@ -65,8 +70,11 @@ Json add_graph(VoronoiAxis& out, const Complex& axis, const SolidInput& input, c
   Stopwatch watch;
   AxisGraphOptions how;
   how.homotopy_angle = options.theta;
-  how.of_patches = options.patch_angle.has_value();
-  how.patch_angle = options.patch_angle.value_or(how.patch_angle);
+  how.of_patches = options.patches.has_value();
+  if (options.patches) {
+    how.patch_angle = options.patches->patch_angle;
+    how.patch_fit = options.patches->patch_fit;
+  }
   const AxisGraph graph = axis_graph(axis, input.mesh.mesh, how, context);
   out.drafts.emplace_back(*options.graph);
   write_graph(out.drafts.back().path(), graph, metadata);

@@ -10,14 +10,16 @@
 #include "blum/core/context.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/io/draft.hpp"
+#include "blum/voronoi/voronoi_patches.hpp"
 #include "common/solid_input.hpp"
 #include "common/summary.hpp"
 
 namespace blum::cli {
 
-/// Texts of the options --theta and --decimate, and of --graph and --patch-angle, which apply to all parts.
+/// Texts of the options --theta and --decimate, and of --graph, --patch-angle and --patch-fit, which apply to all
+/// parts.
 struct VoronoiAxisTexts {
-  std::optional<std::string> theta, decimate, graph, patch_angle;
+  std::optional<std::string> theta, decimate, graph, patch_angle, patch_fit;
 
   void add_to(const Command& command);
   /// Returns the name of the first given option that is only for medial axes. Returns an empty text if none is given.
@@ -28,7 +30,7 @@ struct VoronoiAxisOptions {
   double theta = 1;     ///< degrees; the default is above the angles by which rounding to 32 bits bends faces
   double decimate = 0;  ///< mesh units; 0 keeps all vertices
   std::optional<std::filesystem::path> graph;
-  std::optional<double> patch_angle;  ///< degrees; without a value, sites are not joined
+  std::optional<VoronoiPatchOptions> patches;  ///< without a value, sites are not joined
 };
 
 /// @throws UsageError.
@@ -44,8 +46,7 @@ struct VoronoiAxis {
   std::vector<PhaseTime> phases;
 };
 
-/// @param walls   result of voronoi_complex() for VoronoiPart::medial_axis. If `options.patch_angle` is given, it has
-/// the
+/// @param walls   result of voronoi_complex() for VoronoiPart::medial_axis. If `options.patches` is given, it has the
 ///                columns of add_patch_columns().
 /// @param source, weld  metadata of the file: name of the input and weld tolerance.
 [[nodiscard]] VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input,

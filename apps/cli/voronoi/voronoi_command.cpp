@@ -49,6 +49,7 @@ constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o part.vtp --tolerance 0.1    at most 0.1 mesh units from the exact walls
   blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    remove needles first, and write that mesh
   blum voronoi part.stl --walls --graph part.json --patch-angle 30    graph of smooth patches instead of triangles
+  blum voronoi part.stl --walls --graph part.json --patch-fit 0.001    graph of planes, cylinders, cones and spheres
   blum voronoi part.stl --json -                   report only: sites, cubes, certificate
 
 Exit status 3: the complex is not certified. Only --allow-uncertified writes it.)";
@@ -267,16 +268,14 @@ Request parse(const Arguments& a) {
   return r;
 }
 
-/// The patches of the sites, if --patch-angle is given.
+/// The patches of the sites, if --patch-angle or --patch-fit is given.
 using Patches = std::optional<std::vector<VoronoiPatch>>;
 
-/// If --patch-angle is given, finds the patches, and adds their columns to the complex.
+/// If --patch-angle or --patch-fit is given, finds the patches, and adds their columns to the complex.
 Patches add_patches(const Request& r, const MeshView& mesh, std::span<const VoronoiSite> sites, Complex& complex,
                     const Context& context) {
-  if (!r.axis.patch_angle) return std::nullopt;
-  VoronoiPatchOptions options;
-  options.patch_angle = *r.axis.patch_angle;
-  std::vector<VoronoiPatch> patches = voronoi_patches(mesh, sites, options, context);
+  if (!r.axis.patches) return std::nullopt;
+  std::vector<VoronoiPatch> patches = voronoi_patches(mesh, sites, *r.axis.patches, context);
   add_patch_columns(complex, patches);
   return patches;
 }
@@ -291,13 +290,29 @@ std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, std
   return graph;
 }
 
+/// Counts shapes, for example " (2 planes, 1 cylinder)". Returns an empty text if shapes were not fitted.
+std::string shapes_text(const std::vector<VoronoiPatch>& patches) {
+  std::string out;
+  for (const auto& named : Description<SurfaceKind>::values) {
+    const auto count =
+        static_cast<std::size_t>(std::count_if(patches.begin(), patches.end(), [&](const VoronoiPatch& one) {
+          return one.shape && one.shape->kind == named.value;
+        }));
+    if (count == 0) continue;
+    const std::string name(named.name);
+    out += (out.empty() ? " (" : ", ") + plural(count, name, name + "s");
+  }
+  return out.empty() ? out : out + ")";
+}
+
 std::string patches_text(const std::vector<VoronoiPatch>& patches) {
   const auto count_of = [&](SiteKind kind) {
     return static_cast<std::size_t>(
         std::count_if(patches.begin(), patches.end(), [&](const VoronoiPatch& one) { return one.kind == kind; }));
   };
-  return count_text(count_of(SiteKind::face)) + " of faces, " + count_text(count_of(SiteKind::edge)) +
-         " of reflex edges, " + count_text(count_of(SiteKind::vertex)) + " of reflex vertices";
+  return count_text(count_of(SiteKind::face)) + " of faces" + shapes_text(patches) + ", " +
+         count_text(count_of(SiteKind::edge)) + " of reflex edges, " + count_text(count_of(SiteKind::vertex)) +
+         " of reflex vertices";
 }
 
 std::string graph_text(const VoronoiGraph& graph) {

@@ -14,6 +14,7 @@
 #include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/surface_shape.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum {
@@ -29,6 +30,9 @@ struct AxisGraphOptions {
   /// If true, sheets are those of pairs of patches. They are numbered as in the column `patch_sheet` of
   /// label_patch_sheets(). Triangles inside a patch are left out.
   bool of_patches = false;
+  /// Mesh units. If set, patches of the mesh are planes, spheres, cylinders and cones. Their vertices are at most this
+  /// far from the shape. Edges inside them bend by at most `patch_angle`. Used only if a mesh is given.
+  std::optional<double> patch_fit = {};
 };
 
 template <>
@@ -44,6 +48,11 @@ struct Description<AxisGraphOptions> {
              Range::between(0, 180)},
       Member{"of_patches", &AxisGraphOptions::of_patches, "",
              "true for sheets of pairs of patches, numbered as in the column patch_sheet of an axis with patches"},
+      Member{
+          "patch_fit", &AxisGraphOptions::patch_fit, "mesh units",
+          "if the mesh is given: patches are planes, spheres, cylinders and cones with vertices at most this far; if "
+          "unset, bends alone decide",
+          Range::positive()},
   };
 };
 
@@ -159,19 +168,21 @@ struct AxisPatch {
   double area = 0;
   Vec3d centroid;  ///< Centroid of the area.
   Vec3d normal;    ///< Mean normal over the area, scaled to unit length; 0 if undefined, as for a closed surface.
+  std::optional<SurfaceShape> shape = {};  ///< The fitted shape, if `patch_fit` is set.
 };
 
 template <>
 struct Description<AxisPatch> {
   static constexpr std::string_view name = "AxisPatch";
-  static constexpr std::string_view doc =
-      "Smooth part of the input mesh: faces connected through edges that bend little";
+  static constexpr std::string_view doc = "Smooth part of the input mesh: connected faces whose edges bend little";
   static constexpr std::tuple members{
       Member{"faces", &AxisPatch::faces, "", "triangles of the mesh"},
       Member{"area", &AxisPatch::area, "square mesh units", "area of the faces"},
       Member{"centroid", &AxisPatch::centroid, "mesh units", "centroid of the area"},
       Member{"normal", &AxisPatch::normal, "",
              "unit vector in the direction of the mean normal over the area; 0 if undefined, as for a closed surface"},
+      Member{"shape", &AxisPatch::shape, "",
+             "plane, sphere, cylinder or cone that fits the faces, if it was asked for"},
   };
 };
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -13,14 +14,23 @@
 
 namespace blum::detail {
 
-/// Smooth part of a mesh. Its faces are connected through edges that have exactly two faces and bend little. Faces
-/// without area belong to no patch.
+/// Smooth part of a mesh. Its faces are connected through edges that have exactly two faces and bend little, unless
+/// patches are given. Faces without area belong to no patch.
 struct SurfacePatch {
   std::size_t faces = 0;
   double area = 0;  ///< Square mesh units.
   Vec3d centroid;   ///< Centroid of the area.
   Vec3d normal;     ///< Mean normal over the area, scaled to unit length; 0 if undefined, as for a closed surface.
 };
+
+/// Returns the normals of all triangles. Their lengths are twice the areas.
+[[nodiscard]] std::vector<Vec3d> triangle_normals(const MeshView& mesh);
+
+/// Returns for each edge of a mesh 1 if it has exactly two triangles with normals, and bends by at most an angle.
+/// @param normals  for each triangle, a vector in the direction of its normal; 0 if it has none.
+/// @param angle    degrees.
+[[nodiscard]] std::vector<std::uint8_t> smooth_edges(const MeshView& mesh, const SiteTable& sites,
+                                                     std::span<const Vec3d> normals, double angle);
 
 /// Patches of a mesh, numbered in the order of their first faces.
 class SurfacePatches {
@@ -35,6 +45,13 @@ class SurfacePatches {
   /// @param normals  for each triangle, a vector in the direction of its normal. Its length is twice the area.
   SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals, double angle,
                  const Context& context);
+
+  /// Uses given patches.
+  /// @param normals   as above.
+  /// @param patch_of  for each triangle, the number of its patch; none for a triangle without one. Numbers start at 0,
+  /// and none is left out.
+  SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals,
+                 std::vector<std::uint32_t> patch_of);
 
   static constexpr std::uint32_t none = 0xffffffffU;
 
@@ -55,7 +72,6 @@ class SurfacePatches {
   };
   void find_rows();
   void join_faces(double angle, const Context& context);
-  [[nodiscard]] bool is_smooth(std::uint32_t edge, double least_cosine) const;
   void add_up();
 
   const MeshView mesh_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/surface_shape.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/voronoi_sites.hpp"
 
@@ -20,6 +22,9 @@ namespace blum {
 struct VoronoiPatchOptions {
   /// Degrees. Faces form one patch if they are connected through edges that bend by at most this angle.
   double patch_angle = 30;
+  /// Mesh units. If set, a patch of faces is a connected part of a plane, sphere, cylinder or cone. Its vertices are at
+  /// most this far from the shape. Edges inside it bend by at most `patch_angle`.
+  std::optional<double> patch_fit = {};
 };
 
 template <>
@@ -29,6 +34,10 @@ struct Description<VoronoiPatchOptions> {
   static constexpr std::tuple members{
       Member{"patch_angle", &VoronoiPatchOptions::patch_angle, "degrees",
              "largest bend at an edge between two faces of one patch", Range::between(0, 180)},
+      Member{"patch_fit", &VoronoiPatchOptions::patch_fit, "mesh units",
+             "patches are planes, spheres, cylinders and cones: largest distance between a shape and its vertices; if "
+             "unset, bends alone decide",
+             Range::positive()},
   };
 };
 
@@ -41,7 +50,8 @@ struct Description<VoronoiPatchOptions> {
 ///   vertex  A reflex vertex between patches. It lies on no such chain of edges.
 struct VoronoiPatch {
   SiteKind kind = SiteKind::face;
-  std::vector<std::int32_t> sites;  ///< Numbers of its sites as in voronoi_sites(), ascending.
+  std::vector<std::int32_t> sites;         ///< Numbers of its sites as in voronoi_sites(), ascending.
+  std::optional<SurfaceShape> shape = {};  ///< The fitted shape of a patch of faces, if `patch_fit` is set.
 };
 
 template <>
@@ -51,6 +61,8 @@ struct Description<VoronoiPatch> {
   static constexpr std::tuple members{
       Member{"kind", &VoronoiPatch::kind, "", "face: faces; edge: reflex edges between patches; vertex: one vertex"},
       Member{"sites", &VoronoiPatch::sites, "", "sites of the patch, including reflex edges and vertices inside it"},
+      Member{"shape", &VoronoiPatch::shape, "",
+             "plane, sphere, cylinder or cone that fits the faces, if it was asked for"},
   };
 };
 
@@ -59,10 +71,12 @@ struct Description<VoronoiPatch> {
 /// as in AxisGraph::patches. Then come patches of edges, and those of vertices, in the order of their smallest sites.
 /// The normal of a face is the mean normal of its triangles. A face without triangles belongs to no patch: a
 /// VoronoiReport joined it to another face.
+/// With `patch_fit`, patches of faces are those of the shapes that fit them. Flat faces that fit no sphere, cylinder or
+/// cone are planes. Where several shapes fit, the one with the largest part is chosen, and then the least deviation
+/// decides (docs/theory/voronoi.md#fitted-patches). Patches do not depend on the number of threads.
 /// @param sites  result of voronoi_sites() for this mesh.
-/// @throws InvalidOption if the angle is out of range, or if the sites are not those of the mesh; InvalidMesh;
-/// Cancelled.
-/// Cost: O(n log n) for n triangles, about 1 us per triangle.
+/// @throws InvalidOption if the angle or the tolerance is out of range, or if the sites are not those of the mesh;
+/// InvalidMesh; Cancelled. Cost: O(n log n) for n triangles, about 1 us per triangle; about 20 us with `patch_fit`.
 [[nodiscard]] std::vector<VoronoiPatch> voronoi_patches(const MeshView& mesh, std::span<const VoronoiSite> sites,
                                                         const VoronoiPatchOptions& options = {},
                                                         const Context& context = {});

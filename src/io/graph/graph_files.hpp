@@ -63,7 +63,7 @@ using Attribute = std::pair<std::string, std::variant<std::int64_t, double, bool
 using Attributes = std::vector<Attribute>;
 
 /// Adds attributes for the members of a struct that are numbers, enumerations or truth values. For members of a nested
-/// struct, the name is that of the struct, '_' and that of the member.
+/// struct, the name is that of the struct, '_' and that of the member. An optional struct without a value adds none.
 template <DescribedStruct T>
 void add_members(const T& whole, Attributes& out, const std::string& prefix = {}) {
   for_each_member<T>([&](const auto& member) {
@@ -72,6 +72,10 @@ void add_members(const T& whole, Attributes& out, const std::string& prefix = {}
     const std::string name = prefix + std::string(member.name);
     if constexpr (DescribedStruct<Value>) {
       add_members(value, out, name + "_");
+    } else if constexpr (requires {
+                           requires DescribedStruct<typename Value::value_type> && requires { value.has_value(); };
+                         }) {
+      if (value) add_members(*value, out, name + "_");
     } else if constexpr (DescribedEnum<Value>) {
       out.emplace_back(name, std::string(to_string(value)));
     } else if constexpr (std::same_as<Value, Vec3d>) {
