@@ -244,7 +244,7 @@ def test_patches_of_axes_of_images_and_scans_are_fitted_too():
 def test_files_name_shapes(tmp_path):
     found = traced(extruded(Profile("cylinder", [ring(48)]), 5.0), "all")
     found.write_graph(tmp_path / "graph.json", patch_fit=1e-9)
-    first, *caps = json.loads((tmp_path / "graph.json").read_text())["patches"]
+    *caps, first = json.loads((tmp_path / "graph.json").read_text())["patches"]
     assert first["shape"]["kind"] == "cylinder" and first["shape"]["radius"] == pytest.approx(1)
     assert 0 <= first["shape"]["deviation"] < 1e-12 and not first["shape"]["concave"]
     assert [cap["shape"]["kind"] for cap in caps] == ["plane", "plane"]
