@@ -131,7 +131,7 @@ class VoronoiComplex(Complex):
         >>> found = blum.voronoi_complex(blum.generate("cylinder", sides=48))
         >>> len(found.sites()), len(found.patches())
         (50, 3)
-        >>> side = found.patches(patch_fit=1e-6)[0].shape
+        >>> side = found.patches(patch_fit=1e-6)[1].shape
         >>> side.kind, side.radius
         ('cylinder', 1.0)
         """
