@@ -132,8 +132,8 @@ class VoronoiComplex(Complex):
         >>> len(found.sites()), len(found.patches())
         (50, 3)
         >>> side = found.patches(patch_fit=1e-6)[1].shape
-        >>> side.kind, side.radius
-        ('cylinder', 1.0)
+        >>> side.kind, round(side.radius, 9)
+        ('cylinder', 0.5)
         """
         options = _patch_options(patch_angle, patch_fit)
         return ShortList(_core.voronoi_patches(self._mesh._arrays, self.report.joined_faces, options))
