@@ -358,7 +358,7 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
                                                     {flatness, TracedPlaces::separate}};
   if (flatness > 0) ways.emplace_back(0.0, TracedPlaces::separate);
   std::optional<std::uint64_t> left;  // work that all ways together may still do
-  std::string first;
+  std::string problems;
   std::vector<TracedSites::Index> tried;  // the faces of a separate way that failed
   for (const auto& [own, places] : ways) {
     const std::optional<TracedSites> sites = TracedSites::of(mesh, table, exact, own, places);
@@ -382,10 +382,11 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
         return;
       }
     }
-    if (first.empty()) first = problem;
+    const std::string_view way = places == TracedPlaces::merged ? "close places joined: " : "close places apart: ";
+    problems += (problems.empty() ? "" : "; ") + std::string(way) + problem;
     if (left == 0) break;
   }
-  out.report.trace_problem = first;
+  out.report.trace_problem = problems;
 }
 
 /// Returns true if tracing is tried for solids that are not convex. By default, medial axes come from cubes: their

@@ -226,9 +226,11 @@ struct VoronoiReport {
   /// If traced: places where the proof did not succeed. Each other junction is proven. A seam is open at one place.
   /// Reflex vertices whose regions are thinner than 1e-7 of their lengths, and left out, are also open.
   std::vector<OpenVoronoiPlace> open;
-  std::string trace_problem;  ///< If tracing failed: the reason and the place.
-  BettiNumbers expected{};    ///< Betti numbers that the requested part of the exact diagram has.
-  BettiNumbers found{};       ///< Betti numbers of the complex.
+  /// If tracing failed: the reason and the place, for each way that was tried. Close junctions were joined or kept
+  /// apart.
+  std::string trace_problem;
+  BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
+  BettiNumbers found{};     ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
   /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact, it
   /// covers rounding and joined junctions. The exact diagram is then that of the planes, within `flatness` of the

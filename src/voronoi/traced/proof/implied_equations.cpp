@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -39,7 +39,7 @@ struct Mirror {
     out[a] = 1;
     if (a == b) return out;
     out[b] = -sign;
-    return out / std::sqrt(2.0);
+    return out / std::numbers::sqrt2;
   }
 };
 

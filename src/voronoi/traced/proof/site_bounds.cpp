@@ -23,8 +23,8 @@ double least_height(const std::array<Vec3d, 3>& c) {
 
 }  // namespace
 
-SiteBounds::SiteBounds(const TracedSites& sites, const MeshView& mesh) : sites_(sites) {
-  rounding_ = 0x1p-49 * sites.extent();
+SiteBounds::SiteBounds(const TracedSites& sites, const MeshView& mesh)
+    : sites_(sites), rounding_(0x1p-49 * sites.extent()) {
   // The plane of a face is that of its largest triangle.
   std::vector<double> largest(sites.size(), 0.0);
   std::vector<std::uint32_t> reference(sites.size(), 0);
