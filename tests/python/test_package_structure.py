@@ -5,6 +5,7 @@ import itertools
 import blum
 import numpy as np
 import pytest
+from amount import number, some
 from exact_structure import structure
 from exact_structure_families import named_convex, random_convex, triangulate, variants
 
@@ -56,19 +57,20 @@ def check(solid):
     return True
 
 
-def test_a_thousand_random_polyhedra_have_the_exact_structure():
-    for shape in random_convex(1000, seed=47):
+def test_random_polyhedra_have_the_exact_structure():
+    for shape in some(random_convex(1000, seed=47), 200):
         assert check(triangulate(shape)), shape.name
 
 
 def test_random_polyhedra_keep_their_structure_when_they_move():
-    solids = [solid for shape in random_convex(100, seed=48) for solid in variants(shape)]
+    solids = [solid for shape in random_convex(number(100, 30), seed=48) for solid in variants(shape)]
     clear = sum(check(solid) for solid in solids)
     assert clear > 0.95 * len(solids)
 
 
 @pytest.mark.parametrize("way", ["fan", "refined"])
 def test_named_solids_have_the_exact_structure_however_they_lie(way):
-    solids = list(itertools.chain.from_iterable(variants(shape, way) for shape in named_convex()))
+    shapes = some(named_convex(), 50 if way == "fan" else 20)
+    solids = list(itertools.chain.from_iterable(variants(shape, way) for shape in shapes))
     clear = sum(check(solid) for solid in solids)
     assert clear > 0.95 * len(solids)
