@@ -56,6 +56,8 @@ struct Allowances {
   [[nodiscard]] double missing_at(double radius) const {
     return of_voxels ? missing : std::min(missing, std::max(radius / 2, 2 * voxel));
   }
+  /// Returns how far the centre of a ball may be from a cell of its sheet, if its radius is above `missing`.
+  [[nodiscard]] double beside_sheet() const { return missing - voxel; }
   /// Returns how far the centre of a ball of this radius, between opposite walls of a thin part, may be from the axis.
   [[nodiscard]] double missing_in_thin(double radius) const { return std::max(of_thin * radius, rounding); }
   /// Returns the largest radius of thin parts: there, missing_in_thin() is below missing_at().

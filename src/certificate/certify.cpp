@@ -185,8 +185,10 @@ Certificate verifier::certify_against(const Complex& complex, const KnownSolid& 
   certificate.triangles = verifier::check_triangles(axis, solid, locations, parts, certificate.checked, factor,
                                                     certificate.mismatches, context);
   if (certificate.checked.labels) {
-    certificate.labels = verifier::check_labels(axis, incidence, certificate.mismatches, context);
+    certificate.labels = verifier::check_labels(axis, incidence, factor, certificate.mismatches, context);
   }
+  certificate.sheets = verifier::check_sheets(complex, incidence, solid, parts.body_of, certificate.checked, factor,
+                                              certificate.mismatches, context);
   if (certificate.checked.angles) {
     certificate.angles = verifier::check_angles(axis, incidence, solid, parts.body_of, certificate.checked, factor,
                                                 certificate.mismatches, context);

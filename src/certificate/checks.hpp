@@ -82,8 +82,17 @@ struct EdgeWays {
                                             std::vector<std::string>& mismatches, const Context& context);
 
 /// Checks roles and sheets, and adds mismatches.
-[[nodiscard]] LabelCheck check_labels(const MedialView& axis, const Incidence& incidence,
+/// @param factor  lengths of the axis are this many times the caller's.
+[[nodiscard]] LabelCheck check_labels(const MedialView& axis, const Incidence& incidence, double factor,
                                       std::vector<std::string>& mismatches, const Context& context);
+
+/// Checks sheets against walls, sites and patches, and adds mismatches.
+/// @param complex    with the columns of MedialView.
+/// @param incidence  incidence of `complex`.
+/// @param body_of    for each vertex: see AxisParts.
+[[nodiscard]] SheetCheck check_sheets(const Complex& complex, const Incidence& incidence, const KnownSolid& solid,
+                                      const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
+                                      double factor, std::vector<std::string>& mismatches, const Context& context);
 
 /// Checks the separation angles of triangles and edges, and adds mismatches.
 /// @param body_of  for each vertex: see AxisParts.

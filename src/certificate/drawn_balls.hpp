@@ -78,6 +78,8 @@ class BallDraws {
   BallDraws(const SolidOracle& solid, std::size_t count, std::function<std::optional<Start>(std::size_t)> draw);
 
   [[nodiscard]] std::size_t size() const { return list_.size(); }
+  /// Returns the body of the k-th point, of which grown() returned a ball.
+  [[nodiscard]] std::uint32_t body(std::size_t k) const { return list_[k].start->body; }
 
   /// Returns the ball from the k-th point that touches two walls at a separation angle of at least `floor` degrees, as
   /// grown_ball() defines it. Returns a ball of radius 0 if that ball does not count.

@@ -60,16 +60,19 @@ std::size_t doubled(std::span<const Cell> cells) {
 
 class Labels {
  public:
-  Labels(const MedialView& axis, const Incidence& incidence) : axis_(axis), incidence_(incidence) {}
+  Labels(const MedialView& axis, const Incidence& incidence, double factor)
+      : axis_(axis), incidence_(incidence), factor_(factor) {}
 
   /// Checks that the right edges are listed, with the right roles.
-  void check_edges(LabelCheck& check) {
+  /// @param seam  receives the place and the sheets of the first seam edge with fewer than three triangles.
+  void check_edges(LabelCheck& check, std::string& seam) const {
     const std::size_t count = incidence_.edges().size();
     std::vector<bool> is_listed(count, false);
     for (std::size_t n = 0; n < axis_.edges.size(); ++n) {
       const std::uint32_t e = incidence_.edge_of_listed()[n];
       is_listed[e] = true;
       const MedialRole role = role_of_edge(triangles_at(e));
+      if (axis_.edge_role(n) == MedialRole::seam && role != MedialRole::seam && seam.empty()) seam = seam_text(e);
       if (role == MedialRole::sheet) {
         ++check.inner_listed;
       } else if (axis_.edge_role(n) != role) {
@@ -128,6 +131,18 @@ class Labels {
     return incidence_.triangles_of_edge()[edge].size();
   }
 
+  /// Returns the place of an edge, and the sheets of its triangles.
+  [[nodiscard]] std::string seam_text(std::uint32_t edge) const {
+    const auto& [a, b] = incidence_.edges()[edge];
+    std::string text = "a seam at " + place_text((axis_.positions[a] + axis_.positions[b]) / (2 * factor_)) + " has ";
+    const std::span<const std::uint32_t> at = incidence_.triangles_of_edge()[edge];
+    if (at.empty()) return text + "no sheets; a seam needs three";
+    text += at.size() == 1 ? "only the sheet " : "only the sheets ";
+    text += std::to_string(axis_.sheet[at[0]]);
+    if (at.size() > 1) text += " and " + std::to_string(axis_.sheet[at[1]]);
+    return text + "; it needs three";
+  }
+
   void count_torn(detail::UnionFind& joined, LabelCheck& check) const {
     std::vector<std::array<std::uint32_t, 2>> parts;  // sheet, and the first triangle of a connected part of it
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -145,6 +160,7 @@ class Labels {
 
   const MedialView& axis_;
   const Incidence& incidence_;
+  double factor_;  ///< lengths are this many times the caller's
 };
 
 void explain(const LabelCheck& check, std::vector<std::string>& mismatches) {
@@ -163,17 +179,19 @@ void explain(const LabelCheck& check, std::vector<std::string>& mismatches) {
 
 }  // namespace
 
-LabelCheck check_labels(const MedialView& axis, const Incidence& incidence, std::vector<std::string>& mismatches,
-                        const Context& context) {
+LabelCheck check_labels(const MedialView& axis, const Incidence& incidence, double factor,
+                        std::vector<std::string>& mismatches, const Context& context) {
   LabelCheck check;
   check.doubled = doubled(axis.edges) + doubled(axis.triangles);
-  Labels labels(axis, incidence);
-  labels.check_edges(check);
+  std::string seam;
+  const Labels labels(axis, incidence, factor);
+  labels.check_edges(check, seam);
   throw_if_cancelled(context);
   labels.check_vertices(check);
   labels.check_sheets(check);
   const std::size_t before = mismatches.size();
   explain(check, mismatches);
+  if (!seam.empty()) mismatches.push_back(seam);
   check.holds = mismatches.size() == before;
   return check;
 }

@@ -18,6 +18,7 @@
 #include "certificate/angle.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/drawn_balls.hpp"
+#include "certificate/missed_pairs.hpp"
 #include "certificate/sampling.hpp"
 #include "certificate/solid_oracle.hpp"
 #include "certificate/triangle_search.hpp"
@@ -27,13 +28,15 @@ namespace {
 
 /// Distances of balls from an axis. The balls touch two walls at a large enough angle.
 struct FoundBalls {
-  Offsets all;                  ///< balls from random points of the whole solid
-  std::vector<Offsets> bodies;  ///< for each body: balls from points in it, near its surface if that has triangles
-  Offsets thin;                 ///< balls in the middle of parts thinner than a voxel
+  Offsets all;                     ///< balls from random points of the whole solid
+  std::vector<Offsets> bodies;     ///< for each body: balls from points in it, near its surface if that has triangles
+  Offsets thin;                    ///< balls in the middle of parts thinner than a voxel
+  std::vector<SeenBall> seen;      ///< for each point of the draws: the ball that counts, if one does
+  std::vector<PairOfWalls> pairs;  ///< walls between which a sheet is missing
 };
 
-/// Returns a search tree over the cells of an axis.
-TriangleSearch search_of(const MedialView& axis, const Context& context) {
+/// Returns the cells of an axis as triangles: edges of curves and single vertices have corners at the same place.
+TriangleMesh cells_of(const MedialView& axis) {
   TriangleMesh cells;
   cells.vertices.assign(axis.positions.begin(), axis.positions.end());
   std::vector<bool> is_named(axis.positions.size(), false);
@@ -50,7 +53,7 @@ TriangleSearch search_of(const MedialView& axis, const Context& context) {
   for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
     if (!is_named[v]) add(v, v, v);
   }
-  return {cells, {}, context};
+  return cells;
 }
 
 /// Decides which balls count as lying between two walls.
@@ -81,16 +84,20 @@ class BallJudge {
   double sought_, above_theta_;
 };
 
-/// Measures how far the centres of the balls are from the axis.
+/// Measures how far the centres of the balls are from the axis, and adds them to `seen`.
 Offsets offsets_of_balls(const BallDraws& draws, const BallJudge& judge, const TriangleSearch& search,
-                         const Allowances& allowed, const Context& context) {
+                         const Allowances& allowed, std::vector<SeenBall>& seen, const Context& context) {
+  const std::size_t before = seen.size();
+  seen.resize(before + draws.size());
   const auto add = [&](Offsets& offsets, std::size_t k) {
     const TouchingBall ball = judge.ball(draws, k);
     if (!(ball.radius > 0)) return;
     const double near = allowed.missing_at(ball.radius);
     // Distances below both the allowance and the largest distance so far need not be exact.
     const double enough = std::min(near, offsets.furthest);
-    offsets.add(search.distance_above(ball.centre, enough, no_group), near, near, near, ball.centre);
+    const double distance = search.distance_above(ball.centre, enough, no_group);
+    offsets.add(distance, near, near, near, ball.centre);
+    seen[before + k] = {ball, draws.body(k)};
   };
   return gathered_offsets(draws.size(), "looking for what is missing", add, context);
 }
@@ -185,6 +192,42 @@ Offsets offsets_of_thin(const BallDraws& draws, std::uint32_t body, const ThinBa
   return gathered_offsets(draws.size(), "looking for what is missing", add, context);
 }
 
+constexpr double above_theta_of_sheets = 10;  ///< degrees: at angles this far above theta, no large sheet is missing
+constexpr std::size_t few_of_pair = 8;        ///< with fewer balls between two walls, nothing is concluded
+constexpr double spacing_of_pair = 2;         ///< voxels: balls this close to each other count as one
+constexpr std::size_t few_apart = 6;          ///< with fewer balls further apart, nothing is concluded
+constexpr double least_held = 0.5;            ///< least share of balls next to a cell of their sheet
+
+/// Replaces the balls of `seen` by those that count at smaller separation angles.
+void add_flat_balls(const DrawnBalls& drawn, const Allowances& allowed, double theta, std::vector<SeenBall>& seen,
+                    const Context& context) {
+  const BallJudge judge(allowed, theta, std::min(theta + above_theta_of_sheets, 0.5 * (theta + 180)));
+  std::size_t before = 0;
+  const auto add = [&](const BallDraws& draws) {
+    parallel_for(context, draws.size(), 64, "looking for what is missing", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        const TouchingBall ball = judge.ball(draws, k);
+        if (ball.radius > 0) seen[before + k] = {ball, draws.body(k)};
+      }
+    });
+    before += draws.size();
+  };
+  add(drawn.in_solid());
+  for (std::uint32_t b = 0; before < seen.size(); b += drawn.every()) add(drawn.in_body(b));
+}
+
+/// Returns the pairs of walls between which a sheet is missing.
+std::vector<PairOfWalls> missing_sheets(const KnownSolid& solid, const std::vector<SeenBall>& seen,
+                                        const TriangleMesh& cells, const TriangleSearch& search,
+                                        const Allowances& allowed, const Context& context) {
+  std::vector<PairOfWalls> pairs =
+      pairs_of_walls(solid, seen, cells, search, allowed, few_of_pair, spacing_of_pair * allowed.voxel, context);
+  std::erase_if(pairs, [](const PairOfWalls& pair) {
+    return pair.apart <= few_apart || static_cast<double>(pair.held) >= least_held * static_cast<double>(pair.examined);
+  });
+  return pairs;
+}
+
 /// Computes balls from random points, the same in every run, and their distances from the axis.
 /// @param theta   degrees.
 /// @param sought  least separation angle of the balls that count, degrees.
@@ -193,19 +236,23 @@ Offsets offsets_of_thin(const BallDraws& draws, std::uint32_t body, const ThinBa
 FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double theta,
                       double sought, bool fitted, const Context& context) {
   const auto body_count = static_cast<std::uint32_t>(solid.bodies.size());
-  FoundBalls found{{}, std::vector<Offsets>(body_count), {}};
+  FoundBalls found{{}, std::vector<Offsets>(body_count), {}, {}, {}};
   if (!(sought > theta)) return found;  // no angle is above theta = 180 degrees
   const DrawnBalls& drawn = solid.drawn_balls();
   if (drawn.in_solid().size() == 0) return found;
-  const TriangleSearch search = search_of(axis, context);
+  const TriangleMesh cells = cells_of(axis);
+  const TriangleSearch search(cells, {}, context);
   const BallJudge judge(allowed, theta, sought);
-  found.all = offsets_of_balls(drawn.in_solid(), judge, search, allowed, context);
+  found.all = offsets_of_balls(drawn.in_solid(), judge, search, allowed, found.seen, context);
   // In a small body, a coarse grid shows only steep angles reliably.
   const BallJudge steep_judge(allowed, theta, std::max(sought, Allowances::steep));
   for (std::uint32_t b = 0; b < body_count; b += drawn.every()) {
-    found.bodies[b] = offsets_of_balls(drawn.in_body(b), steep_judge, search, allowed, context);
+    found.bodies[b] = offsets_of_balls(drawn.in_body(b), steep_judge, search, allowed, found.seen, context);
   }
-  if (!fitted || allowed.of_voxels || solid.solid->slack() > 0) return found;
+  if (allowed.of_voxels || solid.solid->slack() > 0) return found;
+  add_flat_balls(drawn, allowed, theta, found.seen, context);
+  found.pairs = missing_sheets(solid, found.seen, cells, search, allowed, context);
+  if (!fitted) return found;
   const ThinBallJudge thin_judge(*solid.solid, allowed, theta, sought);
   for (std::uint32_t b = 0; b < body_count; b += drawn.every()) {
     found.thin.add(offsets_of_thin(drawn.in_body(b), b, thin_judge, search, allowed, context));
@@ -632,6 +679,18 @@ void note_missing(MedialCheck& check, const FoundBalls& found, double factor) {
   }
 }
 
+void explain_pairs(const std::vector<PairOfWalls>& pairs, double factor, MedialCheck& check,
+                   std::vector<std::string>& mismatches) {
+  check.pairs_missed = pairs.size();
+  if (pairs.empty()) return;
+  const PairOfWalls& first = pairs.front();
+  check.pair_missed_at = first.missed.centre / factor;
+  mismatches.push_back(
+      "the axis misses sheets between " + count_text(pairs.size()) + " pairs of walls, the first one at " +
+      place_text(check.pair_missed_at) + ", between the walls at " + place_text(first.missed.first / factor) + " and " +
+      place_text(first.missed.second / factor) + ", which " + count_text(first.balls) + " medial balls touch");
+}
+
 }  // namespace
 
 MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const std::vector<std::uint32_t>& body_of,
@@ -693,7 +752,9 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   if (options.theta) {
     const double theta = std::max(*options.theta, allowed.noise);
     check.sought_angle = std::min(theta + well_above, 0.5 * (theta + 180));
-    note_missing(check, find_balls(axis, solid, allowed, theta, check.sought_angle, options.fitted, context), factor);
+    const FoundBalls found = find_balls(axis, solid, allowed, theta, check.sought_angle, options.fitted, context);
+    note_missing(check, found, factor);
+    explain_pairs(found.pairs, factor, check, mismatches);
   }
   check.allowance = allowed.middle / factor;
   check.missing_allowance = allowed.missing / factor;

@@ -16,6 +16,8 @@
 #include "certificate/segments.hpp"
 #include "certificate/shells.hpp"
 #include "certificate/solid_oracle.hpp"
+#include "certificate/stated_sites.hpp"
+#include "certificate/surface_walls.hpp"
 #include "certificate/triangle_search.hpp"
 
 namespace blum::verifier {
@@ -279,12 +281,34 @@ class ShellOracle : public SolidOracle {
     return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, points, context));
   }
 
+  [[nodiscard]] std::array<std::uint32_t, 2> walls_at(const Vec3d& point, std::uint32_t body) const override {
+    std::vector<std::uint32_t> at;
+    search_.find_within(point, 1e-9 * diagonal(), body, at);
+    if (at.empty()) at.push_back(search_.nearest(point, body).triangle);
+    std::array<std::uint32_t, 2> both{walls().of(at[0]), walls().of(at[0])};
+    for (const std::uint32_t t : at) both = {std::min(both[0], walls().of(t)), std::max(both[1], walls().of(t))};
+    return both;
+  }
+
+  [[nodiscard]] bool are_smooth(std::uint32_t wall, std::uint32_t other) const override {
+    return walls().smooth_part_of_wall(wall) == walls().smooth_part_of_wall(other);
+  }
+
+  [[nodiscard]] const StatedSites* stated_sites() const override {
+    if (mesh_.triangles.data() != named_.triangles.data()) return nullptr;
+    return &stated_sites_.get([&] { return StatedSites(mesh_, sites_, shells_, walls()); });
+  }
+
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
     return verifier::distance_from_site(named_, sites_, p, site);
   }
 
  private:
   enum class Side { inside, outside, unknown };
+
+  [[nodiscard]] const SurfaceWalls& walls() const {
+    return walls_.get([&] { return SurfaceWalls(mesh_, shells_, body_of_); });
+  }
 
   /// Returns on which side of the boundary a point lies, judged by its closest triangle. No other part of the boundary
   /// lies between them. If the closest point belongs to no other triangle, the height above the triangle decides. If it
@@ -513,6 +537,8 @@ class ShellOracle : public SolidOracle {
   std::vector<std::vector<Corner>> corners_;  ///< for each body: one corner at each vertex
   SiteTable sites_;                           ///< sites of `named_`
   TriangleSearch search_;                     ///< with bodies as groups
+  Lazy<SurfaceWalls> walls_;
+  Lazy<StatedSites> stated_sites_;
 };
 
 }  // namespace

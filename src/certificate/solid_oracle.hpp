@@ -21,6 +21,11 @@
 
 namespace blum::verifier {
 
+class StatedSites;
+
+/// The number of no wall.
+inline constexpr std::uint32_t no_wall = 0xffffffffU;
+
 /// A value that is computed when it is first needed, and then kept. If several threads need it at once, one computes it
 /// and the others wait. If the computation throws, the next request tries again.
 template <class T>
@@ -135,6 +140,17 @@ class SolidOracle {
   /// Returns how far outside the voxels a point still counts as inside: 0, unless only voxels define the inside of a
   /// mesh.
   [[nodiscard]] virtual double slack() const { return 0; }
+  /// Returns the smallest and the largest number of the walls (SurfaceWalls) of a body that contain a point of its
+  /// surface. They differ at an edge between walls. Returns no_wall twice if the surface is not that of the bodies, or
+  /// has no triangles.
+  [[nodiscard]] virtual std::array<std::uint32_t, 2> walls_at(const Vec3d& /*point*/, std::uint32_t /*body*/) const {
+    return {no_wall, no_wall};
+  }
+  /// Returns true if two walls belong to one smooth part of the surface.
+  [[nodiscard]] virtual bool are_smooth(std::uint32_t wall, std::uint32_t other) const { return wall == other; }
+  /// Returns the sites by their numbers in files of Voronoi diagrams. Returns nullptr if the surface is not that of the
+  /// bodies, or if it has other triangles than the input.
+  [[nodiscard]] virtual const StatedSites* stated_sites() const { return nullptr; }
   /// Returns the distance of a point from a site; HUGE_VAL if the site does not exist.
   [[nodiscard]] virtual double distance_from_site(const Vec3d& p, SiteId site) const = 0;
   /// Returns the paths and points for linking and winding numbers; nullptr if they are unknown. They are computed once.

@@ -343,6 +343,16 @@ TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double wi
   return found;
 }
 
+void TriangleSearch::find_within(const Vec3d& p, double distance, std::uint32_t group,
+                                 std::vector<std::uint32_t>& found) const {
+  const double most = distance * distance;
+  found.clear();
+  search(p, most, group, [&](std::uint32_t place, const Vec3d& /*closest*/, double squared) {
+    if (squared <= most) found.push_back(triangles_[place]);
+    return most;
+  });
+}
+
 Vec3d TriangleSearch::closest_point_within(const Vec3d& p, double within, std::uint32_t group) const {
   double best = within * within * as_close;
   const double unknown = best;

@@ -79,6 +79,9 @@ class TriangleSearch {
   /// Does the same, faster, if a triangle of the group is known to be within the distance `within`.
   [[nodiscard]] Nearest nearest_within(const Vec3d& p, double within, std::uint32_t group) const;
 
+  /// Finds the triangles of a group within a distance of a point.
+  void find_within(const Vec3d& p, double distance, std::uint32_t group, std::vector<std::uint32_t>& found) const;
+
   /// Returns the closest point of the triangles of a group, if one of them is known to be within the distance `within`.
   /// Costs less than nearest_within().
   [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t group) const;

@@ -320,6 +320,12 @@ struct Description<BallUnionCheck> {
 /// larger by more than 5 %. The axis must come within three radii of its centre, except for one ball. So a missing end
 /// of a wire is found if it is longer than that. Such balls are also grown from vertices of the surface.
 ///
+/// In polyhedra, single sheets must not be missing either. Walls are flat or smooth parts of the surface. Two walls
+/// count if more than 8 balls touch both. More than 6 of the balls must have centres that are 2 voxels apart from each
+/// other. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180 degrees.
+/// Their radius is above `missing_allowance`. Half of them must be next to a cell of the axis between these walls
+/// (docs/theory/certificate.md).
+///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
 /// but not judged.
 struct MedialCheck {
@@ -356,13 +362,15 @@ struct MedialCheck {
   double missed_share_of_body = 0;  ///< As `missed_share`, for the balls of the body with the largest share.
   /// Largest distance of the centre of a ball of that body from the axis, mesh units.
   double missed_in_body_by = 0;
-  Vec3d missed_in_body_at;      ///< Centre of the ball at that distance, mesh units.
-  std::size_t thin_balls = 0;   ///< Balls in the middle of parts thinner than a voxel; 0 if they were not judged.
-  std::size_t thin_missed = 0;  ///< Balls among `thin_balls` that are more than three of their radii from the axis.
-  double thin_missed_by = 0;    ///< Largest distance of the centre of one of `thin_balls` from the axis, mesh units.
-  Vec3d thin_missed_at;         ///< Centre of the ball at that distance, mesh units.
-  bool judges_missing = false;  ///< True if at least 20 balls count, in the whole solid or in one body.
-  bool holds = false;           ///< True if no judged limit is exceeded.
+  Vec3d missed_in_body_at;       ///< Centre of the ball at that distance, mesh units.
+  std::size_t thin_balls = 0;    ///< Balls in the middle of parts thinner than a voxel; 0 if they were not judged.
+  std::size_t thin_missed = 0;   ///< Balls among `thin_balls` that are more than three of their radii from the axis.
+  double thin_missed_by = 0;     ///< Largest distance of the centre of one of `thin_balls` from the axis, mesh units.
+  Vec3d thin_missed_at;          ///< Centre of the ball at that distance, mesh units.
+  std::size_t pairs_missed = 0;  ///< Pairs of walls between which a sheet is missing.
+  Vec3d pair_missed_at;          ///< Centre of a missed ball of the first such pair, mesh units.
+  bool judges_missing = false;   ///< True if at least 20 balls count, in the whole solid or in one body.
+  bool holds = false;            ///< True if no judged limit is exceeded.
 };
 
 template <>
@@ -433,6 +441,9 @@ struct Description<MedialCheck> {
              "largest distance of the centre of one of thin_balls from the axis"},
       Member{"thin_missed_at", &MedialCheck::thin_missed_at, "mesh units",
              "centre of the ball at the distance thin_missed_by"},
+      Member{"pairs_missed", &MedialCheck::pairs_missed, "", "pairs of walls between which a sheet is missing"},
+      Member{"pair_missed_at", &MedialCheck::pair_missed_at, "mesh units",
+             "centre of a ball between the first such pair, where the axis is missing"},
       Member{"judges_missing", &MedialCheck::judges_missing, "", "true if enough balls count to judge missing parts"},
       Member{"holds", &MedialCheck::holds, "", "true if no limit is exceeded"},
   };
@@ -580,6 +591,37 @@ struct Description<AngleCheck> {
   };
 };
 
+/// Result of the check of sheets against the walls of a polyhedron (docs/theory/certificate.md). A part of a sheet is
+/// large if it has 4 square voxels and 8 triangles or more. Edges that bend by less than 45 degrees, or do not touch a
+/// seam, join triangles to parts. Large parts of a sheet must not lie between different pairs of walls. At most 5 % of
+/// `vertices` may be `wrong`, or 3 if that is more. Files of Voronoi diagrams may have columns of patches. Then each
+/// pair of sites, and each sheet of patches, must have one pair of patches.
+struct SheetCheck {
+  std::size_t sheets = 0;     ///< Sheets with two large parts that only edges next to seams join.
+  std::size_t two_pairs = 0;  ///< Sheets among `sheets` that lie between two pairs of walls. None is accepted.
+  Vec3d two_pairs_at;         ///< Point in the first such sheet, mesh units.
+  std::size_t vertices = 0;   ///< Vertices inside the part of a sheet for which the file states one pair of sites.
+  std::size_t wrong = 0;      ///< Vertices among `vertices` with a footprint on neither of these sites.
+  Vec3d wrong_at;             ///< Position of the first such vertex, mesh units.
+  bool holds = false;         ///< True if no limit is exceeded.
+};
+
+template <>
+struct Description<SheetCheck> {
+  static constexpr std::string_view name = "SheetCheck";
+  static constexpr std::string_view doc = "Check that sheets lie between single pairs of walls";
+  static constexpr std::tuple members{
+      Member{"sheets", &SheetCheck::sheets, "", "sheets with two large parts that only edges next to seams join"},
+      Member{"two_pairs", &SheetCheck::two_pairs, "", "such sheets that lie between two pairs of walls"},
+      Member{"two_pairs_at", &SheetCheck::two_pairs_at, "mesh units", "point in the first sheet of two pairs of walls"},
+      Member{"vertices", &SheetCheck::vertices, "",
+             "vertices inside a part of a sheet for which the file states one pair of sites"},
+      Member{"wrong", &SheetCheck::wrong, "", "such vertices with a footprint on neither of these sites"},
+      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first such vertex"},
+      Member{"holds", &SheetCheck::holds, "", "true if no limit is exceeded"},
+  };
+};
+
 /// Parts that a certificate checks besides the numbers of components, tunnels and voids. A part should be off if the
 /// file of the axis lacks its data. If a part is off, parts that need it are not checked either.
 struct CertificateOptions {
@@ -641,6 +683,7 @@ struct Certificate {
   EdgeCheck edges;
   TriangleCheck triangles;
   LabelCheck labels;  ///< Computed if CertificateOptions::labels is true.
+  SheetCheck sheets;  ///< Computed for polyhedra.
   AngleCheck angles;  ///< Computed if CertificateOptions::angles is true.
   HomologyCheck homology;
   BallUnionCheck balls;
@@ -670,6 +713,7 @@ struct Description<Certificate> {
       Member{"edges", &Certificate::edges, "", "check of the edges"},
       Member{"triangles", &Certificate::triangles, "", "check of the triangles between their edges"},
       Member{"labels", &Certificate::labels, "", "check of roles and sheets"},
+      Member{"sheets", &Certificate::sheets, "", "check of sheets against the walls of the solid"},
       Member{"angles", &Certificate::angles, "", "check of the separation angles of triangles and edges"},
       Member{"homology", &Certificate::homology, "", "check of tunnels and voids"},
       Member{"balls", &Certificate::balls, "", "distances between solid and balls"},
