@@ -80,7 +80,7 @@ tsan: ## Run the tests that use threads under ThreadSanitizer
 fuzz: ## Run every fuzz target for a short while (FUZZ_SECONDS=15 each)
 	@tools/fuzz.sh
 
-configurations: ## Build configurations with parts switched off, and test the scalar and the serial paths
+configurations: ## Build configurations with parts switched off, and test the code without SIMD and threads
 	@tools/check_configurations.sh
 
 findings: ## Run the scripts of findings/ on other packages, with pinned versions from PyPI (a few minutes; not part of CI)
