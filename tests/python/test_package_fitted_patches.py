@@ -158,7 +158,7 @@ def test_a_rounded_box_has_the_walls_of_its_faces_edges_and_corners():
     small = []
     for pieces in (3, 4):
         solid = rounded_box((3, 2, 1.5), 0.3, pieces)
-        for moved in (solid, families.variants(solid)[1]):
+        for moved in (solid, families.variants(solid)[1])[: 5 - pieces]:
             found = traced(moved)
             kinds, patches = shapes(found, 1e-9)
             assert kinds == {"plane": 6, "cylinder": 12, "sphere": 8}
@@ -186,7 +186,7 @@ def test_a_rounded_box_has_the_walls_of_its_faces_edges_and_corners():
 def test_steps_have_two_cylinders_and_the_circle_between():
     """The structure does not depend on the number of sides."""
     graphs = []
-    for sides in (24, 48):
+    for sides in (16, 32):
         found = traced(revolved([(2, 0), (2, 1), (0.75, 1), (0.75, 2.5)], sides))
         kinds, patches = shapes(found, 1e-9)
         assert kinds == {"plane": 3, "cylinder": 2}
@@ -203,7 +203,7 @@ def test_steps_have_two_cylinders_and_the_circle_between():
 
 
 def test_an_octant_on_a_block_is_one_sphere():
-    for pieces in (6, 9):
+    for pieces in (5, 7):
         for moved in families.variants(octant(pieces)):
             mesh = blum.Mesh(moved.vertices, moved.triangles)
             found = blum.voronoi_complex(mesh, part="walls", method="cubes", resolution=2, max_cubes=1000)

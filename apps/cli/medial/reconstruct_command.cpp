@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   blum reconstruct part.vtp -o part.ply                      union of the balls of an axis, as a mesh
-  blum reconstruct part.vtp -o part.nrrd --resolution 512    the same as a signed field
+  blum reconstruct part.vtp -o part.nrrd --resolution 256    the same as a signed field
   blum reconstruct part.vtp -o part.ply --input part.stl     also report its distance from the solid)";
 
 struct Arguments {
