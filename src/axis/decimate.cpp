@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,17 +25,35 @@ using detail::SheetDecimator;
 /// sheets by at most its limit.
 constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};
 
-/// Returns the edges that bound sheets: the edges that the axis lists, and those between triangles of different sheets.
+/// The sheet of each triangle, and the patches on its sides if the axis has them.
+class SheetParts {
+ public:
+  explicit SheetParts(const Columns& triangles) {
+    columns_.push_back(triangles.get<std::int32_t>(medial_columns::sheet));
+    for (const std::string_view name : medial_columns::patches) {
+      if (triangles.find(name) != nullptr) columns_.push_back(triangles.get<std::int32_t>(name));
+    }
+  }
+  [[nodiscard]] bool same(std::uint32_t a, std::uint32_t b) const {
+    return std::all_of(columns_.begin(), columns_.end(), [&](const auto& column) { return column[a] == column[b]; });
+  }
+
+ private:
+  std::vector<std::span<const std::int32_t>> columns_;
+};
+
+/// Returns the edges that bound sheets: the edges that the axis lists, and those between triangles of different sheets
+/// or different patches.
 std::vector<std::array<std::uint32_t, 2>> borders_of(const Complex& axis, const Context& context) {
   std::vector<std::array<std::uint32_t, 2>> borders = axis.edges;
   const Incidence incidence(axis.view(), context);
   std::vector<bool> is_listed(incidence.edges().size(), false);
   for (const std::uint32_t e : incidence.edge_of_listed()) is_listed[e] = true;
-  const auto sheets = axis.triangle_columns.get<std::int32_t>(medial_columns::sheet);
+  const SheetParts parts(axis.triangle_columns);
   for (std::size_t e = 0; e < is_listed.size(); ++e) {
     const auto triangles = incidence.triangles_of_edge()[e];
     if (is_listed[e] || triangles.empty()) continue;
-    const bool is_inner = triangles.size() == 2 && sheets[triangles[0]] == sheets[triangles[1]];
+    const bool is_inner = triangles.size() == 2 && parts.same(triangles[0], triangles[1]);
     if (!is_inner) borders.push_back(incidence.edges()[e]);
   }
   return borders;

@@ -362,5 +362,36 @@ TEST(SampleAxis, EveryPointHasASampleWithinTheStep) {
   EXPECT_THROW((void)sample_axis(view, std::nan("")), InvalidOption);
 }
 
+/// A flat sheet lies between two pairs of patches, whose border is straight. Each pair keeps its area.
+TEST(DecimatePatches, KeepsTheBorderBetweenPairsOfPatches) {
+  constexpr std::uint32_t side = 12;
+  AxisRows rows;
+  for (std::uint32_t k = 0; k < side * side; ++k) {
+    rows.vertices.emplace_back().position = {static_cast<double>(k % side), static_cast<double>(k / side), 0};
+    rows.vertices.back().radius = 1;
+  }
+  std::vector<std::int32_t> patch;
+  for (std::uint32_t k = 0; k + side < side * side; ++k) {
+    if (k % side == side - 1) continue;
+    rows.triangles.push_back({{k, k + 1, k + side + 1}, 90, 0});
+    rows.triangles.push_back({{k, k + side + 1, k + side}, 90, 0});
+    patch.insert(patch.end(), 2, k % side < 7 ? 1 : 2);
+  }
+  Complex axis = rows;
+  label_sheets(axis, Incidence(axis.view()));
+  axis.triangle_columns.add({"patch_a", 1, std::vector<std::int32_t>(patch.size(), 0)});
+  axis.triangle_columns.add({"patch_b", 1, std::move(patch)});
+  const Complex lean = decimate(axis, 1).axis;
+  EXPECT_LT(lean.triangles.size(), 20U);
+  std::map<std::int32_t, double> areas;
+  const auto kept = lean.triangle_columns.get<std::int32_t>("patch_b");
+  for (std::size_t t = 0; t < lean.triangles.size(); ++t) {
+    const auto& [a, b, c] = lean.triangles[t];
+    areas[kept[t]] += 0.5 * length(cross(lean.positions[b] - lean.positions[a], lean.positions[c] - lean.positions[a]));
+  }
+  EXPECT_DOUBLE_EQ(areas[1], 77);
+  EXPECT_DOUBLE_EQ(areas[2], 44);
+}
+
 }  // namespace
 }  // namespace blum
