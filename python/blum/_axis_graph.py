@@ -18,9 +18,9 @@ from ._complex import Complex
 from ._mesh import Mesh, MeshOrVertices, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import AxisGraph, AxisGraphOptions
+from ._structs import AxisGraph, AxisGraphOptions, SheetMatches, SheetMatchOptions
 
-__all__ = ["axis_graph"]
+__all__ = ["axis_graph", "match_sheets"]
 
 
 @takes("AxisGraphOptions")
@@ -71,6 +71,54 @@ def axis_graph(
             _stated(axis, options),
             integer(threads, "threads"),
             report,
+        )
+    return found
+
+
+@takes("SheetMatchOptions")
+def match_sheets(
+    first: Complex,
+    second: Complex,
+    *,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[SheetMatchOptions],
+) -> SheetMatches:
+    """Compares the sheets of two medial axes of one solid, and returns those that both have.
+
+    Points are spread evenly over each sheet. Each lies on the sheet of the closest triangle of the other axis, if this
+    triangle is within the tolerance. Two sheets are partners if more than half of each lies on the other.
+
+    Parameters
+    ----------
+    first, second : MedialComplex
+        Axes with sheets. Other complexes with a column `sheet` of triangles are also accepted.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    Returns
+    -------
+    SheetMatches
+        `first` and `second` list the sheets of each axis. Each has its `partner`, and all `overlaps` with sheets of the
+        other axis. If both axes have patches (`with_patches`), `sides` contains the patches on both sides of a sheet.
+
+    Examples
+    --------
+    >>> import blum
+    >>> box = blum.generate("box", size_x=3, size_y=2)
+    >>> grid = blum.medial_axis(box, resolution=48).simplify(10).with_patches()
+    >>> exact = blum.voronoi_complex(box, part="medial").with_patches().medial_axis(10)
+    >>> found = blum.match_sheets(grid, exact)
+    >>> found.first.matched, found.second.matched, found.same_sides, found.same_large_sheets
+    (13, 13, 13, True)
+    """
+    for axis in (first, second):
+        if not isinstance(axis, Complex):
+            raise TypeError(f"an axis must be a blum.MedialComplex, not {type(axis).__name__}")
+    with reporting(progress) as report:
+        found: SheetMatches = _core.match_sheets(
+            first._core, second._core, dict(options), integer(threads, "threads"), report
         )
     return found
 

@@ -30,6 +30,7 @@ from ._arguments import (
     number,
     site_ids,
 )
+from ._axis_graph import mesh_of
 from ._certificate import Claim, ShapeVerifier
 from ._complex import core_arguments
 from ._errors import InvalidOption
@@ -280,6 +281,49 @@ class MedialComplex(MedialColumns):
             core, deviation = _core.decimate(self._core, most, integer(threads, "threads"), report)
         before = self._origin.deviation or 0.0
         return MedialComplex._of(core, self.has, replace(self._origin, deviation=before + deviation))
+
+    def with_patches(
+        self,
+        patch_angle: Real = 30.0,
+        *,
+        patch_fit: Real | None = None,
+        mesh: MeshOrVertices | None = None,
+        triangles: npt.ArrayLike | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> MedialComplex:
+        """Returns this axis with the patches on both sides of each triangle, as columns `patch_a` and `patch_b`.
+
+        The numbers are those of :meth:`VoronoiComplex.patches` for the same mesh and arguments, the smaller one first.
+        Inside a patch, both are equal. The column `patch_sheet` contains the sheets of pairs of patches, and -1 inside
+        a patch. `graph(of_patches=True)` then has these sheets.
+
+        Parameters
+        ----------
+        patch_angle, patch_fit
+            As for :meth:`VoronoiComplex.patches`.
+        mesh, triangles
+            The mesh of the axis, which must be closed. Default: the mesh from which the axis was made. For an axis from
+            a file, the mesh must be given.
+        threads, progress
+            As for :func:`distance_field`.
+
+        Examples
+        --------
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60).with_patches()
+        >>> [name for name in ("patch_a", "patch_b", "patch_sheet") if name in axis.triangle_columns]
+        ['patch_a', 'patch_b', 'patch_sheet']
+        """
+        own = mesh_of(self, mesh, triangles)
+        if own is None:
+            raise InvalidOption("patches are those of a mesh, which is not known here: with_patches(mesh=...)")
+        options = {"patch_angle": number(patch_angle, "patch_angle")}
+        if patch_fit is not None:
+            options["patch_fit"] = number(patch_fit, "patch_fit")
+        with reporting(progress) as report:
+            core = _core.with_axis_patches(self._core, own._arrays, options, integer(threads, "threads"), report)
+        return MedialComplex._of(core, self.has, self._origin)
 
     @takes("ExtendOptions")
     def extend(

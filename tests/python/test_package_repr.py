@@ -57,6 +57,7 @@ def results():
         "certificate": piece.certificate,
         "certificate.medial": piece.certificate.medial,
         "graph": graph,
+        "match_sheets": blum.match_sheets(piece, piece),
         "nested": nested,
         "nested.at": nested.at(60),
         "extend": piece.extend(),

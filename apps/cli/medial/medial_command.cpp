@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blum/axis/extend_axis.hpp"
+#include "blum/axis/label_patch_sheets.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/certified/certified_axis.hpp"
 #include "blum/core/parallel.hpp"
@@ -19,6 +20,8 @@
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
+#include "blum/solid/solid.hpp"
+#include "blum/voronoi/axis_patches.hpp"
 #include "commands.hpp"
 #include "common/common_options.hpp"
 #include "common/files.hpp"
@@ -52,7 +55,8 @@ Exit status 3: an axis is not certified. Only --allow-uncertified writes such an
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> theta, prune, decimate, threshold, weld, threads, graph, patch_fit, extend, extend_length;
+  std::optional<std::string> theta, prune, decimate, threshold, weld, threads, graph, patch_angle, patch_fit, extend,
+      extend_length;
   OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
@@ -65,7 +69,8 @@ struct Request {
   fs::path input;
   fs::path output;
   std::optional<fs::path> graph;
-  std::optional<double> patch_fit;  ///< mesh units; if unset, bends alone decide on patches in the graph
+  std::optional<double> patch_fit;             ///< mesh units; if unset, bends alone decide on patches
+  std::optional<VoronoiPatchOptions> patches;  ///< set if the file gets sheets of pairs of patches
   std::optional<fs::path> extend;
   ExtendOptions extending;
   MedialAxisOptions options;
@@ -103,8 +108,11 @@ Request parse(const Arguments& a) {
   check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::both));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   r.graph = parse_graph(a.graph);
-  if (a.patch_fit && !r.graph) throw UsageError("--patch-fit is for graphs; add --graph");
+  if (a.patch_fit && !r.graph && !a.patch_angle) {
+    throw UsageError("--patch-fit is for graphs and sheets of patches; add --graph or --patch-angle");
+  }
   if (a.patch_fit) r.patch_fit = parse_positive("--patch-fit", *a.patch_fit);
+  if (a.patch_angle) r.patches = {parse_angle("--patch-angle", *a.patch_angle), r.patch_fit};
   r.extend = parse_extend(a.extend);
   r.extending = parse_extend_length(a.extend_length, r.extend.has_value());
   exclude(a.options.has("resolution"), "--resolution", a.options.has("spacing"), "--spacing",
@@ -151,7 +159,8 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
   }
   refuse_given({{a.weld.has_value(), "--weld"}}, input, "an image", "meshes");
   if (a.smooth) return;
-  refuse_given({{a.extend.has_value(), "--extend"}}, input, "an image", "meshes and images with --smooth");
+  refuse_given({{a.extend.has_value(), "--extend"}, {a.patch_angle.has_value(), "--patch-angle"}}, input, "an image",
+               "meshes and images with --smooth");
   refuse_given({{a.options.has("resolution"), "--resolution"},
                 {a.options.has("spacing"), "--spacing"},
                 {a.options.has("max_resolution"), "--max-resolution"},
@@ -228,6 +237,8 @@ Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const 
   AxisGraphOptions options;
   options.homotopy_angle = metadata.theta;
   options.patch_fit = r.patch_fit;
+  options.of_patches = r.patches.has_value();
+  if (r.patches) options.patch_angle = r.patches->patch_angle;
   const AxisGraph graph = input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, options, context)
                                                         : axis_graph(complex, options, context);
   run.graphs.emplace_back(beside_axis(*r.graph, r.output, name));
@@ -278,17 +289,26 @@ struct AskedSolid {
 class AxisDrafts {
  public:
   AxisDrafts(const Request& r, const AskedSolid& solid, const Context& context)
-      : r_(r), solid_(solid), context_(context) {}
+      : r_(r), solid_(solid), context_(context) {
+    if (!r.patches) return;
+    polyhedron_ = of_file(r.input, [&] {
+      Solid solid_of_mesh = Solid::of(solid.input.mesh.mesh, context);
+      check_manifold(solid_of_mesh);
+      return solid_of_mesh;
+    });
+  }
 
   /// Writes an axis to a file, reads the file, and certifies the axis that it contains.
   Certificate certify(const AxisCandidate& axis) {
     Stopwatch watch;
     const MedialMetadata metadata = for_file(axis.metadata, r_, solid_.input, solid_.selection);
     const fs::path& path = draft_of(axis.grid_shift, *metadata.theta).path();
+    const Complex& complex = with_patches(axis);
+    if (polyhedron_) axis.phases.push_back({"patches", watch.lap()});
     if (r_.nested) {
-      write_medial(path, axis.axis.axis, axis.whole->nested(context_), axis.whole->least_theta(), metadata, context_);
+      write_medial(path, complex, axis.whole->nested(context_), axis.whole->least_theta(), metadata, context_);
     } else {
-      write_medial(path, axis.axis.axis, metadata, context_);
+      write_medial(path, complex, metadata, context_);
     }
     axis.phases.push_back({"write", watch.lap()});
     Certificate certificate = solid_.verifier.certificate_of(path, metadata, solid_.selection, context_);
@@ -302,17 +322,37 @@ class AxisDrafts {
     return drafts_.try_emplace({grid_shift, theta}, name).first->second;
   }
 
+  /// Returns the axis in this draft. @param made the same axis without patches.
+  const Complex& axis_of(double grid_shift, double theta, const Complex& made) const {
+    const auto at = with_patches_.find({grid_shift, theta});
+    return at == with_patches_.end() ? made : at->second;
+  }
+
  private:
+  /// Returns the axis as it is written: with the columns of patches if they are requested.
+  const Complex& with_patches(const AxisCandidate& axis) {
+    if (!polyhedron_) return axis.axis.axis;
+    Complex& out = with_patches_[{axis.grid_shift, *axis.metadata.theta}];
+    out = axis.axis.axis;
+    add_axis_patch_columns(out, *polyhedron_, *r_.patches, context_);
+    label_patch_sheets(out, context_);
+    return out;
+  }
+
   const Request& r_;
   const AskedSolid& solid_;
   const Context& context_;
+  std::optional<Solid> polyhedron_;  ///< set if patches are requested
   std::map<std::pair<double, double>, Draft> drafts_;
+  std::map<std::pair<double, double>, Complex> with_patches_;  ///< for each draft, its axis; empty without patches
 };
 
 /// Adds the axis for one angle to the results.
+/// @param complex  the axis as its file contains it.
 /// @param size  the result of size_of() for the solid.
-void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const CertifiedAxis& made, bool model_passes,
-              double size, Draft&& draft, Json& axes, const Context& context) {
+void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const CertifiedAxis& made,
+              const Complex& complex, bool model_passes, double size, Draft&& draft, Json& axes,
+              const Context& context) {
   const SolidInput& input = solid.input;
   const Certificate& certificate = made.certificate;
   const MedialMetadata metadata = for_file(made.metadata, r, input, solid.selection);
@@ -330,7 +370,7 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
                   {"counts", counts_json(counts, true)},
                   {"deviation", made.axis.deviation},
                   {"vertices_before", made.axis.vertices_before},
-                  {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
+                  {"graph", add_graph(run, r, input, complex, metadata, name, context)},
                   {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate, r.nested)}});
 }
@@ -384,8 +424,9 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
   Json axes = Json::array();
   const double size = size_of(solid.input, solid.selection, context);
   for (const CertifiedAxis& axis : made.axes) {
-    add_axis(run, r, solid, axis, made.report.topology_matches, size,
-             std::move(drafts.draft_of(made.grid_shift, *axis.metadata.theta)), axes, context);
+    const double theta = *axis.metadata.theta;
+    add_axis(run, r, solid, axis, drafts.axis_of(made.grid_shift, theta, axis.axis.axis), made.report.topology_matches,
+             size, std::move(drafts.draft_of(made.grid_shift, theta)), axes, context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
@@ -533,9 +574,14 @@ void add_medial_command(const CommandLine& line) {
   command.add_flag("--smooth", a->smooth,
                    "Image: use the solid inside the smooth surface of the voxels, instead of the boxes of the voxels");
   add_graph_option(command, a->graph, "Also write the sheets, seams, curves and junctions of the axis as a graph");
+  text(
+      "--patch-angle", a->patch_angle, "DEG",
+      "Mesh: add columns with the patches of the surface on both sides of each triangle (patch_a, patch_b), and with "
+      "the sheets of these pairs (patch_sheet). The graph is that of the patches. Edges inside a patch bend by at most "
+      "DEG degrees, 0 to 180 (30 suits most meshes)");
   add_text_option(command, "--patch-fit", a->patch_fit, "TOL",
-                  "Mesh: patches in the graph are planes, spheres, cylinders and cones whose vertices lie within TOL "
-                  "mesh units (default: smooth parts of the surface)");
+                  "Mesh: patches are planes, spheres, cylinders and cones whose vertices lie within TOL mesh units "
+                  "(default: smooth parts of the surface)");
   add_extend_options(command, a->extend, a->extend_length);
   command.add_flag("--nested", a->nested,
                    "Also store the axes of all angles from --theta upwards (.npz), for `blum view`");

@@ -47,10 +47,6 @@ constexpr const char* missing_rule =
     "; its axis belongs to voxels that the file of the axis does not record (.obj and .ma store neither rule nor "
     "grid). Verify the .vtp, .ply or .npz file of the same axis; if the axis was made with --weld, repeat it";
 
-std::string percent(double share) {
-  return rounded_text(std::round(share * 1000) / 10) + " %";
-}
-
 std::string nothing_seen(const MedialCheck& check) {
   return "random points of the solid show " +
          std::string(check.balls == 0 ? "no medial ball" : "too few medial balls") + " with an angle above " +
@@ -99,6 +95,10 @@ std::string medial_share_text(const Certificate& c) {
 }
 
 }  // namespace
+
+std::string percent(double share) {
+  return rounded_text(std::round(share * 1000) / 10) + " %";
+}
 
 MedialFile read_axis(const std::filesystem::path& path) {
   MedialFile file = read_medial(path);

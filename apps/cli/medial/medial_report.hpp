@@ -19,6 +19,9 @@ namespace blum::cli {
 /// and so on).
 [[nodiscard]] MedialFile read_axis(const std::filesystem::path& path);
 
+/// Returns a share (1 is everything) as text, for example "12.5 %".
+[[nodiscard]] std::string percent(double share);
+
 /// Content of a file with a medial axis, with walls of a Voronoi diagram, or with centrelines.
 struct ShownAxis {
   MedialFile file;      ///< for diagrams, walls between the same two sites form one sheet
