@@ -50,8 +50,8 @@ class BodyEdges {
 
   /// Returns a point of a segment that is furthest outside the body, up to a factor of 1.25. If no point is outside by
   /// more than `allowed`, any point may be returned. A ball around a point inside, with the point's depth as radius,
-  /// lies in the body. So only the parts between such balls are searched. In a thin wall these parts are many, so the
-  /// segment is first tested against the boundary.
+  /// lies in the body. So only the parts between such balls are searched. In a thin wall these parts are many, so each
+  /// part is first tested against the boundary.
   /// @param looks  number of points that may still be examined; it is reduced. Returns nullopt if they do not suffice.
   [[nodiscard]] std::optional<Stop> furthest_out(const Stop& a, const Stop& b, double allowed,
                                                  std::size_t& looks) const {
@@ -69,6 +69,8 @@ class BodyEdges {
       const double end = gap - std::max(q.depth, 0.0);
       Stop middle{p.at + (q.at - p.at) * ((begin + end) / (2 * gap)), 0};
       if (middle.at == p.at || middle.at == q.at) continue;
+      // Along an edge of the solid, balls are small, but most parts of the segment do not meet the boundary.
+      if (p.depth > 0 && q.depth > 0 && solid_.is_clear(p.at, q.at, body_)) continue;
       if (looks == 0) return std::nullopt;
       --looks;
       const Stop& known = std::abs(p.depth) > std::abs(q.depth) ? p : q;

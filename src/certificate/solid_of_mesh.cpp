@@ -241,11 +241,25 @@ class ShellOracle : public SolidOracle {
     return is_inside ? own : -own;
   }
 
+  /// If both ends lie on one triangle of the boundary, the whole segment does, such as on an edge at which a sheet
+  /// ends.
+  [[nodiscard]] bool holds(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
+    const double nothing = 1e-11 * diagonal();
+    const TriangleSearch::Nearest closest = search_.nearest(0.5 * (a + b), body);
+    if (!(closest.distance <= nothing)) return false;
+    const std::array<Vec3d, 3> corners = corners_of(mesh_, closest.triangle);
+    return std::max(squared_distance(a, corners), squared_distance(b, corners)) <= nothing * nothing;
+  }
+
   [[nodiscard]] bool is_clear(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
     const double reach = length(b - a);
     const double nothing = 1e-13 * diagonal();
     std::vector<Crossing> crossings;
-    if (!(reach > nothing) || !search_.crossings(line_between(a, b), crossings, reach)) return false;
+    if (!(reach > nothing)) return false;
+    if (!search_.crossings(line_between(a, b), crossings, reach)) {
+      // The line may pass through an edge of the mesh beyond the segment.
+      return search_.exact_crossings(a, b, body, crossings) && crossings.empty();
+    }
     return std::none_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
       return body_of_[crossing.triangle] == body && crossing.at >= -nothing && crossing.at <= reach + nothing;
     });

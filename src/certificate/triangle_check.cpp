@@ -69,7 +69,7 @@ class TriangleInBody {
     // A sliver coincides with its sides, which are checked as edges.
     if (is_sliver(triangle)) return worst;
     // In thin walls many balls would be needed, so the triangle is first tested against the boundary.
-    if (worst.depth > 0 && solid_.is_clear({triangle[0].at, triangle[1].at, triangle[2].at}, body_)) return worst;
+    if (is_clear(triangle, worst)) return worst;
     const std::size_t most = points_for(triangle);
     std::vector<Piece> stack{triangle};
     std::size_t points = 0;
@@ -101,6 +101,22 @@ class TriangleInBody {
  private:
   [[nodiscard]] Stop stop(const Vec3d& at) const { return {at, solid_.depth(at, body_)}; }
 
+  /// Returns true if a triangle is known to leave the body by less than `allowed`, since the boundary does not pass
+  /// through it. If corners lie on the boundary, a slightly smaller triangle is tested. Each point of the triangle is
+  /// close to a point of the smaller one.
+  /// @param worst  the least deep corner.
+  [[nodiscard]] bool is_clear(const Piece& triangle, const Stop& worst) const {
+    const auto& [a, b, c] = std::array{triangle[0].at, triangle[1].at, triangle[2].at};
+    if (worst.depth > 0) return solid_.is_clear({a, b, c}, body_);
+    const double closer = 0.5 * allowed_;
+    if (worst.depth < -closer) return false;
+    const Vec3d centre = (a + b + c) / 3.0;
+    const double far = std::max({length(a - centre), length(b - centre), length(c - centre)});
+    if (!(closer < 0.5 * far)) return false;
+    const double share = closer / far;
+    const auto moved = [&](const Vec3d& corner) { return corner + (centre - corner) * share; };
+    return solid_.is_clear({moved(a), moved(b), moved(c)}, body_) && stop(centre).depth > 0;
+  }
   [[nodiscard]] static double area(const Piece& piece) {
     return 0.5 * length(cross(piece[1].at - piece[0].at, piece[2].at - piece[0].at));
   }

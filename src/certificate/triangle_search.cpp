@@ -98,16 +98,30 @@ class PiercedTriangle {
     const double above = height(p);
     const double below = height(q);
     if ((above > slack_ && below > slack_) || (above < -slack_ && below < -slack_)) return false;
-    if (std::abs(above) <= slack_ || std::abs(below) <= slack_) return may_meet(Box3{min(p, q), max(p, q)});
-    const Vec3d at = p + (q - p) * (above / (above - below));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d side = corners_[(k + 1) % 3] - corners_[k];
-      if (dot(cross(normal_, side), at - corners_[k]) < -slack_ * length(side)) return false;
+    if (std::abs(above) <= slack_ || std::abs(below) <= slack_) {
+      if (!may_meet(Box3{min(p, q), max(p, q)})) return false;
+      // Only the part next to the plane may meet the triangle.
+      const auto next_to_plane = [&](const Vec3d& x, double height, const Vec3d& other, double other_height) {
+        if (std::abs(height) <= slack_) return x;
+        return x + (other - x) * ((height - std::copysign(slack_, height)) / (height - other_height));
+      };
+      return !are_beyond_side(next_to_plane(p, above, q, below), next_to_plane(q, below, p, above));
     }
-    return true;
+    const Vec3d at = p + (q - p) * (above / (above - below));
+    return !are_beyond_side(at, at);
   }
 
  private:
+  /// Returns true if two points lie clearly beyond the same side of the triangle.
+  [[nodiscard]] bool are_beyond_side(const Vec3d& p, const Vec3d& q) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d side = corners_[(k + 1) % 3] - corners_[k];
+      const Vec3d across = cross(normal_, side);
+      const double most = -slack_ * length(side);
+      if (dot(across, p - corners_[k]) < most && dot(across, q - corners_[k]) < most) return true;
+    }
+    return false;
+  }
   [[nodiscard]] double height(const Vec3d& p) const { return dot(normal_, p - corners_[0]); }
 
   const std::array<Vec3d, 3>& corners_;
