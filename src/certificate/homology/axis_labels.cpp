@@ -77,18 +77,38 @@ bool lead_between(const SolidOracle& solid, std::uint32_t body, const Curtains& 
          lead_between(solid, body, curtains, step, *middle, b, moves_left, way);
 }
 
+/// Returns 30 unit vectors in directions of all kinds.
+std::vector<Vec3d> all_directions() {
+  std::vector<Vec3d> out;
+  for (std::uint32_t k = 0; k < 12; ++k) {
+    const ProbeLine line = line_through({}, k);
+    out.insert(out.end(), {line.along, -line.along});
+  }
+  for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) out.insert(out.end(), {axis, -axis});
+  return out;
+}
+
+/// Adds a point to a way that ends close to a point of the surface, so that it leads to `to` inside the body, around an
+/// edge or corner of the solid. Adds nothing if none is needed, or none was found.
+void lead_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& surface, const Vec3d& to, Way& way) {
+  const Vec3d from = way.back();
+  if (solid.is_clear(from, to, body)) return;
+  const double size = std::max(length(from - surface), length(to - surface));
+  for (const double scale : {1.0, 0.25, 4.0}) {
+    for (const Vec3d& direction : all_directions()) {
+      const Vec3d at = surface + direction * (scale * size);
+      if (!solid.is_clear(from, at, body) || !solid.is_clear(at, to, body)) continue;
+      way.push_back(at);
+      return;
+    }
+  }
+}
+
 /// Returns a point in a body, close to the given surface point. It is the first point tried that is deep enough for its
 /// step. If there is none, it is the deepest point tried; nullopt if no point is inside.
 /// @param step  the shortest step to try; the longest is 16 times as long.
 std::optional<Vec3d> moved_inside(const SolidOracle& solid, std::uint32_t body, const Vec3d& point, double step) {
-  std::vector<Vec3d> directions;
-  for (std::uint32_t k = 0; k < 12; ++k) {
-    const ProbeLine line = line_through(point, k);
-    directions.insert(directions.end(), {line.along, -line.along});
-  }
-  for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
-    directions.insert(directions.end(), {axis, -axis});
-  }
+  const std::vector<Vec3d> directions = all_directions();
   return best_step(solid, body, point, step, directions, [](const Vec3d&) { return true; });
 }
 
@@ -320,20 +340,78 @@ bool AxisLabels::look_closely(std::span<const std::uint32_t> edges, const Contex
 }
 
 AxisLabels::CloserLook AxisLabels::closer_look(std::uint32_t edge) const {
-  constexpr double fine = 1e-3;
-  constexpr std::size_t most_looks_at_edge = 32'768;
+  const auto [a, b] = given_.incidence.edges()[edge];
+  const std::uint32_t body = given_.parts.body_of[a];
+  Way straight{positions_[a], positions_[b]};
+  if (given_.solid.solid->is_clear(straight[0], straight[1], body)) return {};
+  std::size_t looks = 0;
+  for (const Way& way : ways_beside(edge)) {
+    CloserLook look = closer_look(way, body);
+    looks += look.looks;
+    if (!look.way.empty()) return {std::move(look.way), looks};
+  }
+  CloserLook look = closer_look(straight, body);
+  look.looks += looks;
+  if (look.way.size() == 2) look.way.clear();  // the edge is inside
+  return look;
+}
+
+std::vector<Way> AxisLabels::ways_beside(std::uint32_t edge) const {
+  constexpr std::array<double, 2> steps{16, 256};
   const auto [a, b] = given_.incidence.edges()[edge];
   const std::uint32_t body = given_.parts.body_of[a];
   const SolidOracle& solid = *given_.solid.solid;
+  const double near = allowed_[body] * of_tolerance;
+  const bool has_slid_a = given_.locations[a].depth < near;
+  const bool has_slid_b = given_.locations[b].depth < near;
+  const auto& at = given_.axis.positions;
+  const std::span<const std::uint32_t> triangles = given_.incidence.triangles_of_edge()[edge];
+  std::vector<Way> ways;
+  if (!(has_slid_a || has_slid_b) || triangles.empty()) return ways;
+  const auto& corners = given_.axis.triangles[triangles[0]];
+  // An edge along the surface is led over the triangle beside it.
+  const Vec3d& third = at[corners[0] ^ corners[1] ^ corners[2] ^ a ^ b];
+  const Vec3d aside = has_slid_a && has_slid_b ? third : 0.5 * (at[a] + at[b]);
+  const double size = std::min(length(aside - at[a]), length(aside - at[b]));
+  for (const double step : steps) {
+    const double share = step * near / size;
+    if (!(share < 0.25)) continue;
+    const Vec3d beside_a = at[a] + (aside - at[a] + at[b] - at[a]) * share;
+    const Vec3d beside_b = at[b] + (aside - at[b] + at[a] - at[b]) * share;
+    Way way{positions_[a]};
+    if (has_slid_a) {
+      lead_around(solid, body, at[a], beside_a, way);
+      way.push_back(beside_a);
+    }
+    if (has_slid_b) {
+      Way back{positions_[b]};
+      lead_around(solid, body, at[b], beside_b, back);
+      way.push_back(beside_b);
+      way.insert(way.end(), back.rbegin(), back.rend());
+    } else {
+      way.push_back(positions_[b]);
+    }
+    ways.push_back(std::move(way));
+  }
+  return ways;
+}
+
+AxisLabels::CloserLook AxisLabels::closer_look(const Way& way, std::uint32_t body) const {
+  constexpr double fine = 1e-3;
+  constexpr std::size_t most_looks_at_edge = 32'768;
+  const SolidOracle& solid = *given_.solid.solid;
   const BodyEdges edges(solid, body, fine * allowed_[body]);
-  const auto stop = [&](std::uint32_t v) { return Stop{positions_[v], solid.depth(positions_[v], body)}; };
+  const auto stop = [&](const Vec3d& p) { return Stop{p, solid.depth(p, body)}; };
   const std::size_t most_looks = std::min(most_looks_at_edge, looks_left_);
   PushBudget budget{.looks = most_looks};
-  CloserLook look{.way = {positions_[a]}};
-  const bool is_found = edges.can_be_pushed_in(stop(a), stop(b), budget, look.way);
+  CloserLook look{.way = {way[0]}};
+  bool is_found = true;
+  for (std::size_t k = 1; k < way.size() && is_found; ++k) {
+    is_found = edges.can_be_pushed_in(stop(way[k - 1]), stop(way[k]), budget, look.way);
+    look.way.push_back(way[k]);
+  }
   look.looks = most_looks - budget.looks;
-  if (!is_found || look.way.size() == 1) return {{}, look.looks};
-  look.way.push_back(positions_[b]);
+  if (!is_found) look.way.clear();
   return look;
 }
 

@@ -78,6 +78,12 @@ class AxisLabels {
     std::size_t looks = 0;
   };
   [[nodiscard]] CloserLook closer_look(std::uint32_t edge) const;
+  /// Returns a way between the same ends, pushed into the body; empty if none was found.
+  [[nodiscard]] CloserLook closer_look(const Way& way, std::uint32_t body) const;
+  /// If an end of an edge lies on the surface, returns ways from there that follow the edge, or the triangle beside it.
+  /// The end may have slid to another side of a corner. Then the straight way may leave the body along much of its
+  /// length, or pass the corner on the wrong side.
+  [[nodiscard]] std::vector<Way> ways_beside(std::uint32_t edge) const;
   /// Uses the way that was found for an edge. Returns false if nothing changes.
   bool take(std::uint32_t edge, const CloserLook& look);
   /// Tests edges as closely as doubles allow, on all threads. Returns false if nothing changes.
