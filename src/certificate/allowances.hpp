@@ -51,6 +51,13 @@ struct Allowances {
   [[nodiscard]] double middle_at(double radius, double size = 0) const { return limited(middle, radius / 4, size); }
   /// Returns the limit for at least half of all points.
   [[nodiscard]] double close_at(double radius, double size = 0) const { return limited(close, radius / 8, size); }
+  /// Returns the least separation angle of the two walls between which a point of a cell may lie, in degrees. It is
+  /// half of the angle that the cell claims, but not above the noise. So walls of facets count where the cell claims
+  /// them.
+  [[nodiscard]] double floor_at(double claim) const {
+    constexpr double least = 0.1;
+    return of_voxels ? noise : std::min(noise, std::max(0.5 * claim, least));
+  }
   /// Returns how far the centre of a ball of this radius may be from the axis. Sheets end within about a voxel of their
   /// exact end.
   [[nodiscard]] double missing_at(double radius) const {

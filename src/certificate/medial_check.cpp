@@ -293,7 +293,8 @@ constexpr std::size_t grain = 64;
 struct AxisPoint {
   Vec3d at;
   std::uint32_t body = 0;
-  double size = 0;   ///< length of the longest side of its cell
+  double angle = 0;  ///< separation angle that its cell claims, degrees
+  double size = 0;   ///< length of the longest side of that cell
   double depth = 0;  ///< largest radius at the corners of that cell
 };
 
@@ -321,8 +322,9 @@ class Middle {
     const double nothing = 1e-9 * solid_.diagonal(point.body);
     if (!(depth > nothing)) return {is_thin(point) ? 0 : HUGE_VAL, 0};
     // In most cases another wall is close by.
-    TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise, allowed_.middle);
-    if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise);
+    const double floor = allowed_.floor_at(point.angle);
+    TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, floor, allowed_.middle);
+    if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, floor);
     return ball.radius > 0 ? Found{distance_to_middle(point.at, ball), ball.radius} : Found{};
   }
 
@@ -393,6 +395,7 @@ class Claimed {
       : angles_(axis.positions.size(), 0),
         is_claimed_(axis.positions.size(), false),
         is_between_walls_(axis.positions.size(), false),
+        claim_(axis.positions.size(), 0),
         least_radius_(axis.positions.size(), HUGE_VAL),
         two_walls_(std::max(theta, 2 * noise)) {
     for (std::uint32_t v = 0; has_footprints && v < angles_.size(); ++v) angles_[v] = angle_at(axis, v);
@@ -416,6 +419,8 @@ class Claimed {
   /// Returns true if a vertex should lie between two walls, judged by the angle of one of its cells and by that cell's
   /// other corners.
   [[nodiscard]] bool is_between_walls(std::size_t vertex) const { return is_between_walls_[vertex]; }
+  /// Returns the largest angle that such a cell of a vertex claims, degrees; 0 if none of its cells is one.
+  [[nodiscard]] double claim(std::size_t vertex) const { return claim_[vertex]; }
   /// Returns the separation angle of a vertex's footprints in degrees.
   [[nodiscard]] double angle(std::size_t vertex) const { return angles_[vertex]; }
   /// Returns the smallest radius at the corners of all cells at a vertex.
@@ -429,6 +434,7 @@ class Claimed {
     std::size_t between_walls = 0;
     for (const std::uint32_t v : corners) {
       is_claimed_[v] = true;
+      claim_[v] = std::max(claim_[v], angle);
       least = std::min<double>(least, axis.radius[v]);
       between_walls += angles_[v] > two_walls_ ? 1 : 0;
     }
@@ -440,6 +446,7 @@ class Claimed {
 
   std::vector<double> angles_;
   std::vector<bool> is_claimed_, is_between_walls_;
+  std::vector<double> claim_;  ///< degrees
   std::vector<double> least_radius_;
   double two_walls_ = 0;  ///< degrees: above this angle, two walls are not one rough wall
   Spread sheets_, curves_;
@@ -455,7 +462,9 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
     if (!is_finite(axis.positions[v])) continue;
     const bool is_deep = claimed.contains(v) && axis.radius[v] > allowed.middle;
     check.deep_vertices += is_deep ? 1 : 0;
-    if (claimed.angle(v) >= one_footprint) continue;
+    const double one =
+        claimed.contains(v) ? std::min(one_footprint, allowed.floor_at(claimed.claim(v))) : one_footprint;
+    if (claimed.angle(v) >= one) continue;
     ++check.one_wall;
     check.deep_one_wall += is_deep ? 1 : 0;
     if (claimed.contains(v)) single.push_back(v);
@@ -465,7 +474,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   parallel_for(context, found.size(), grain, "looking for the middle", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const std::uint32_t v = single[k * every];
-      found[k] = middle.find({axis.positions[v], body_of[v]});
+      found[k] = middle.find({axis.positions[v], body_of[v], claimed.claim(v)});
     }
   });
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -490,8 +499,8 @@ class SheetPoints {
     Random random(0x5a3eULL + k);
     const std::uint32_t t = triangle(k, random);
     const std::array<Vec3d, 3> corners = corners_of(axis_, t);
-    return {random_point(corners, random), body_of_[axis_.triangles[t][0]], longest_side(corners),
-            deepest(axis_, axis_.triangles[t])};
+    return {random_point(corners, random), body_of_[axis_.triangles[t][0]], axis_.triangle_angle[t],
+            longest_side(corners), deepest(axis_, axis_.triangles[t])};
   }
   [[nodiscard]] std::int32_t sheet(std::size_t k) const {
     Random random(0x5a3eULL + k);
@@ -728,9 +737,10 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
       on_curves, middle, allowed,
       [&](std::size_t k) {
         Random random(0xc0deULL + k);
-        const auto& [a, b] = axis.edges[claimed.curves().at(at(k, on_curves, random))];
+        const std::uint32_t e = claimed.curves().at(at(k, on_curves, random));
+        const auto& [a, b] = axis.edges[e];
         const Vec3d along = axis.positions[b] - axis.positions[a];
-        return AxisPoint{axis.positions[a] + along * random.uniform(), body_of[a], length(along),
+        return AxisPoint{axis.positions[a] + along * random.uniform(), body_of[a], axis.edge_angle[e], length(along),
                          std::max(axis.radius[a], axis.radius[b])};
       },
       [](std::size_t, bool) {}, context);
