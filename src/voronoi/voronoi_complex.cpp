@@ -389,11 +389,9 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
   out.report.trace_problem = problems;
 }
 
-/// Returns true if tracing is tried for solids that are not convex. By default, medial axes come from cubes: their
-/// sheets pass smoothly from one pair of sites to another, so fewer triangles represent them.
+/// Returns true if tracing is tried for solids that are not convex.
 bool is_traced(const VoronoiOptions& options) {
-  if (options.method != VoronoiMethod::automatic) return options.method == VoronoiMethod::traced;
-  return options.part != VoronoiPart::medial_axis && !options.tolerance;
+  return options.method == VoronoiMethod::automatic ? !options.tolerance : options.method == VoronoiMethod::traced;
 }
 
 /// @param phases  phases that were already completed.

@@ -356,6 +356,58 @@ Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::v
   return out;
 }
 
+/// A diagram, and the axis that was made from it.
+struct Diagram {
+  VoronoiComplex made;
+  Counts counts;
+  std::vector<VoronoiSite> sites;
+  Patches patches;
+  std::vector<std::string> mismatches;  ///< reasons why the diagram is not certified
+  std::optional<VoronoiAxis> axis;      ///< if it was asked for, and may be written
+  std::vector<PhaseTime> phases;
+};
+
+Diagram make_diagram(const Arguments& a, const Request& r, const VoronoiOptions& options, const Solid& solid,
+                     const SolidInput& input, const Context& context) {
+  Stopwatch watch;
+  VoronoiComplex made = of_file(a.input, [&] { return voronoi_complex(solid, options, context); });
+  static_cast<void>(watch.lap());
+  std::vector<PhaseTime> phases = made.report.phases;
+  const Counts counts(made.complex);
+  std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, made.report, context);
+  Patches patches = add_patches(r, input.mesh.mesh, sites, made.complex, context);
+  if (patches) phases.push_back({"patches", watch.lap()});
+  std::vector<std::string> mismatches = mismatches_of(made.report, options, r.clean.has_value());
+  std::optional<VoronoiAxis> axis;
+  if (a.output && a.medial && (mismatches.empty() || a.allow_uncertified)) {
+    axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
+                             context);
+    phases.insert(phases.end(), axis->phases.begin(), axis->phases.end());
+  }
+  return {std::move(made),       counts,          std::move(sites), std::move(patches),
+          std::move(mismatches), std::move(axis), std::move(phases)};
+}
+
+/// Makes the diagram. If the certificate refuses a traced axis, the diagram is made from cubes, unless their axis is
+/// refused, too.
+Diagram certified_diagram(const Arguments& a, const Request& r, const Solid& solid, const SolidInput& input,
+                          const Context& context) {
+  Diagram first = make_diagram(a, r, r.options, solid, input, context);
+  const bool is_refused = first.axis && !first.axis->mismatches.empty() && first.made.report.traced;
+  if (!is_refused || r.options.method != VoronoiMethod::automatic) return first;
+  VoronoiOptions options = r.options;
+  options.method = VoronoiMethod::cubes;
+  Diagram second = make_diagram(a, r, options, solid, input, context);
+  const bool is_better = second.mismatches.empty() && second.axis && second.axis->mismatches.empty();
+  if (is_better) {
+    second.made.report.trace_problem = "the certificate refuses the traced axis: " + first.axis->mismatches.front();
+  }
+  Diagram& best = is_better ? second : first;
+  const Diagram& other = is_better ? first : second;
+  best.phases.insert(best.phases.begin(), other.phases.begin(), other.phases.end());
+  return std::move(best);
+}
+
 /// Returns the names of the files that were written.
 std::vector<std::string> outputs_of(const Arguments& a, bool is_written, bool is_graph_written) {
   std::vector<std::string> out;
@@ -381,30 +433,27 @@ void run(const Arguments& a) {
   std::vector<Warning> warnings = warnings_of(input);
   warnings.insert(warnings.end(), changes.begin(), changes.end());
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
-  VoronoiComplex made = of_file(path, [&] { return voronoi_complex(prepared.solid, r.options, context); });
+  Diagram diagram = certified_diagram(a, r, prepared.solid, input, context);
+  VoronoiComplex& made = diagram.made;
   const VoronoiReport& found = made.report;
-  phases.insert(phases.end(), found.phases.begin(), found.phases.end());
+  const Counts& counts = diagram.counts;
+  const std::vector<VoronoiSite>& sites = diagram.sites;
+  const Patches& patches = diagram.patches;
+  phases.insert(phases.end(), diagram.phases.begin(), diagram.phases.end());
   static_cast<void>(watch.lap());
-  const Counts counts(made.complex);
-  const std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, found, context);
-  const Patches patches = add_patches(r, input.mesh.mesh, sites, made.complex, context);
-  if (patches) phases.push_back({"patches", watch.lap()});
-  std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
+  std::vector<std::string> mismatches = diagram.mismatches;
   const bool may_write = mismatches.empty() || a.allow_uncertified;
   bool is_written = a.output && may_write;
-  std::optional<VoronoiAxis> axis;
+  std::optional<VoronoiAxis>& axis = diagram.axis;
   std::optional<VoronoiGraph> graph;
   if (may_write) graph = make_graph(a, r, sites, patches, made, context);
   if (graph) phases.push_back({"graph", watch.lap()});
-  if (is_written && a.medial) {
-    axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
-                             context);
+  if (axis) {
     mismatches.insert(mismatches.end(), axis->mismatches.begin(), axis->mismatches.end());
     is_written = mismatches.empty() || a.allow_uncertified;
     if (is_written) {
       for (Draft& draft : axis->drafts) draft.keep();
     }
-    phases.insert(phases.end(), axis->phases.begin(), axis->phases.end());
     warnings.insert(warnings.end(), axis->warnings.begin(), axis->warnings.end());
   } else if (is_written) {
     ComplexWriteOptions how;

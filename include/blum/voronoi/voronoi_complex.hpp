@@ -39,8 +39,8 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,  ///< If all bodies are convex: planes. Otherwise: seams are traced. Cubes if this fails or takes long, for
-              ///< medial axes, and if a tolerance is given: only cubes bound the distance from the exact diagram.
+  automatic,  ///< If all bodies are convex: planes. Otherwise: seams are traced. Cubes if this fails or takes long, and
+              ///< if a tolerance is given: only cubes bound the distance from the exact diagram.
   cubes,      ///< Cubes of an octree, each with a proof of its topology.
   traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced, which may take minutes. If it fails:
               ///< cubes.
@@ -65,7 +65,8 @@ struct VoronoiOptions {
   /// with 21 to 24 that of single precision. Cubes: ignored.
   std::optional<double> flatness = {};
   /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
-  /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Planes: ignored.
+  /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Edges of traced medial axes are
+  /// at most about as long as this limit. Planes: ignored.
   int resolution = 16;
   /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With this
   /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of it.
@@ -89,10 +90,9 @@ struct Description<VoronoiOptions> {
   static constexpr std::tuple members{
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
-      Member{
-          "method", &VoronoiOptions::method, "",
-          "auto: exact planes if all bodies are convex, otherwise traced seams, for medial axes cubes; cubes: always; "
-          "traced: seams also for medial axes"},
+      Member{"method", &VoronoiOptions::method, "",
+             "auto: planes if all bodies are convex, otherwise traced seams, cubes if these fail or take long; "
+             "cubes: always; traced: even if it takes minutes"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "planes and traces: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",

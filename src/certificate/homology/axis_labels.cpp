@@ -88,8 +88,8 @@ std::vector<Vec3d> all_directions() {
   return out;
 }
 
-/// Adds a point to a way that ends close to a point of the surface, so that it leads to `to` inside the body, around an
-/// edge or corner of the solid. Adds nothing if none is needed, or none was found.
+/// Adds a point to a way that ends close to a point of the surface. From there, the way leads to `to` inside the body,
+/// around an edge or corner. Adds nothing if no point is needed or found.
 void lead_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& surface, const Vec3d& to, Way& way) {
   const Vec3d from = way.back();
   if (solid.is_clear(from, to, body)) return;

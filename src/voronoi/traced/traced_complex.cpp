@@ -34,6 +34,8 @@ struct Vertex {
   std::vector<Index> sites;  ///< closest sites; empty on the surface
   std::uint32_t on = none;   ///< vertex of the mesh, on the surface
   bool is_junction = false;
+  std::uint32_t edge = none;  ///< edge of the mesh that contains the point, if it is not an end of it
+  double share = 0;           ///< of the way along that edge
 };
 
 class Assembly {
@@ -90,7 +92,9 @@ class Assembly {
   void add_curve(const TracedStructure::Curve& curve) {
     std::vector<std::uint32_t>& list = points_of_curve_.emplace_back();
     list.push_back(curve.ends[0]);
-    if (!curve.is_edge) {
+    if (curve.is_edge) {
+      add_edge(curve, list);
+    } else {
       vertices_[curve.ends[0]].is_junction = vertices_[curve.ends[1]].is_junction = true;
       std::vector<Vec3d> dense{curve.points[0]};
       for (std::size_t k = 1; k < curve.points.size(); ++k) {
@@ -108,6 +112,25 @@ class Assembly {
       }
     }
     list.push_back(curve.ends[1]);
+  }
+
+  /// Adds points of an edge of the polyhedron between its ends, where a sheet of the medial axis ends.
+  void add_edge(const TracedStructure::Curve& curve, std::vector<std::uint32_t>& list) {
+    if (part_ != VoronoiPart::medial_axis) return;
+    const Vertex& from = vertices_[curve.ends[0]];
+    const Vertex& to = vertices_[curve.ends[1]];
+    const Vec3d start = from.at;
+    const Vec3d way = to.at - start;
+    const Segment ends{std::min(from.on, to.on), std::max(from.on, to.on)};
+    const std::span<const Segment> edges = table_.edges();
+    const auto edge = static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), ends) - edges.begin());
+    const auto pieces = static_cast<std::size_t>(std::ceil(length(way) / longest_));
+    const bool is_turned = from.on > to.on;
+    for (std::size_t k = 1; k < pieces; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(pieces);
+      list.push_back(static_cast<std::uint32_t>(vertices_.size()));
+      vertices_.push_back({start + way * share, {}, none, false, edge, is_turned ? 1 - share : share});
+    }
   }
 
   /// Adds points of a curve after a, up to b, so that chords are close to the curve.
@@ -516,7 +539,9 @@ class Assembly {
   [[nodiscard]] Footprints footprints_of(const Vertex& vertex) const {
     Footprints out;
     if (vertex.sites.empty()) {
-      const SiteId own = table_.id({SiteKind::vertex, vertex.on});
+      const bool is_vertex = vertex.on != none;
+      const SiteId own =
+          table_.id({is_vertex ? SiteKind::vertex : SiteKind::edge, is_vertex ? vertex.on : vertex.edge});
       return {{vertex.at, vertex.at}, {own, own}, 0, 0};
     }
     std::array<Index, 2> widest{vertex.sites[0], vertex.sites[0]};
@@ -539,6 +564,14 @@ class Assembly {
     return out;
   }
 
+  /// Returns the position of a vertex. Vertices of the mesh keep their coordinates.
+  [[nodiscard]] Vec3d position_of(const Vertex& vertex) const {
+    if (vertex.on != none) return mesh_.vertices[vertex.on];
+    if (vertex.edge == none) return vertex.at + sites_.origin();
+    const auto& [a, b] = table_.edges()[vertex.edge];
+    return mesh_.vertices[a] + (mesh_.vertices[b] - mesh_.vertices[a]) * vertex.share;
+  }
+
   Complex finish() {
     // Vertices of the mesh that nothing uses are left out.
     std::vector<std::uint32_t> number(vertices_.size(), none);
@@ -554,8 +587,7 @@ class Assembly {
     }
     Complex out;
     for (const Vertex* vertex : used) {
-      // Vertices of the mesh keep their coordinates.
-      out.positions.push_back(vertex->on != none ? mesh_.vertices[vertex->on] : vertex->at + sites_.origin());
+      out.positions.push_back(position_of(*vertex));
     }
     out.triangles = std::move(triangles_);
     out.vertex_columns = Columns(out.positions.size());
