@@ -152,6 +152,7 @@ TAKERS = {
     "axis_graph": lambda mesh: blum.axis_graph(AXIS, mesh),
     "extend_axis": lambda mesh: blum.extend_axis(AXIS, mesh),
     "MedialComplex.extend": lambda mesh: AXIS.extend(mesh),
+    "MedialComplex.with_patches": lambda mesh: AXIS.with_patches(mesh=mesh),
     "ProximityScene.add": lambda mesh: scene_of(mesh)[0].separation(0, 1),
     "ProximityScene.update": updated_scene,
     "separation": lambda mesh: blum.separation(mesh, (blum.generate("box").vertices + 3, [[0, 1, 2]])),
@@ -230,14 +231,15 @@ def test_results_are_those_of_arrays(name, kind, expected, tmp_path):
 def test_vertices_and_triangles_may_be_two_arguments():
     box = blum.generate("box")
     names = [name for name, taker in takers().items() if "triangles" in inspect.signature(taker).parameters]
-    of_axis = {"certify", "axis_graph", "extend_axis", "MedialComplex.extend"}
+    methods = {"MedialComplex.extend", "MedialComplex.with_patches"}
+    of_axis = {"certify", "axis_graph", "extend_axis", *methods}
     assert {*names} >= of_axis | {"distance_field", "medial_axis", "voronoi_complex"}
     coarse = {"medial_axis": {"resolution": 16}, "distance_field": {"resolution": 8}}
     for name in {*names} - of_axis:
         options = coarse.get(name, {})
         taker = operator.attrgetter(name)(blum) if name != "FieldSolver.compute" else solver().compute
         assert content_of(taker(box.vertices, box.triangles, **options)) == content_of(taker(box, **options)), name
-    for name in of_axis - {"MedialComplex.extend"}:
+    for name in of_axis - methods:
         taker = getattr(blum, name)
         assert content_of(taker(AXIS, box.vertices, box.triangles)) == content_of(taker(AXIS, box)), name
 
