@@ -55,7 +55,7 @@ std::uint64_t usual_work(const TracedSites& sites) {
 
 std::uint64_t default_work(const TracedSites& sites, std::size_t triangles) {
   const std::uint64_t count = sites.size();
-  if (3 * sites.face_count() > 2 * triangles) {  // few faces have several triangles
+  if (2 * sites.face_count() > triangles) {  // few faces have several triangles
     constexpr std::uint64_t least_per_site = 10'000, most_per_site = 40'000, most = 30'000'000;
     return least_per_site * count > most ? 0 : std::min(most_per_site * count, most);
   }
