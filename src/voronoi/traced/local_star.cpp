@@ -85,17 +85,27 @@ SeamRay LocalStar::ray(const Vec3d& direction) const {
   const Vec3d right = -axes[0];
   const Vec3d up = -axes[1];
   std::vector<double> angles;
-  const auto add_line = [&](const Vec3d& normal) {
+  const auto way = [&](double angle) { return right * std::cos(angle) + up * std::sin(angle); };
+  // Between many groups, most lines lie where other groups are closer.
+  constexpr std::size_t many = 12;
+  const auto is_lowest = [&](double angle, const Vec3d& gradient) {
+    const Vec3d aside = way(angle);
+    const double most = dot(gradient, aside) - 4 * angle_tolerance_;
+    return std::all_of(near.begin(), near.end(),
+                       [&](const Member* m) { return dot(groups_[m->group], aside) >= most; });
+  };
+  const auto add_line = [&](const Vec3d& normal, const Vec3d* gradient = nullptr) {
     const double a = dot(normal, right), b = dot(normal, up);
     if (!(std::hypot(a, b) >= 1e-9)) return;  // also without a number
     const double angle = std::atan2(-a, b);
-    angles.push_back(angle);
-    angles.push_back(angle + (angle > 0 ? -std::numbers::pi : std::numbers::pi));
+    for (const double own : {angle, angle + (angle > 0 ? -std::numbers::pi : std::numbers::pi)}) {
+      if (gradient == nullptr || near.size() <= many || is_lowest(own, *gradient)) angles.push_back(own);
+    }
   };
   for (std::size_t a = 0; a < near.size(); ++a) {
     for (std::size_t b = a + 1; b < near.size(); ++b) {
       if (near[a]->group != near[b]->group) {
-        add_line(groups_[near[a]->group] - groups_[near[b]->group]);
+        add_line(groups_[near[a]->group] - groups_[near[b]->group], &groups_[near[a]->group]);
       } else {
         add_line(near[a]->across - near[b]->across);
         add_line(near[a]->across + near[b]->across);
@@ -112,7 +122,6 @@ SeamRay LocalStar::ray(const Vec3d& direction) const {
   }
   if (kept.size() > 1 && kept.front() + 2 * std::numbers::pi - kept.back() <= angle_tolerance_) kept.pop_back();
   if (kept.empty()) return out;
-  const auto way = [&](double angle) { return right * std::cos(angle) + up * std::sin(angle); };
   const auto site_at = [&](double angle) { return site_beside(near, direction, way(angle)); };
   std::vector<Index> sectors;  // sector k is counterclockwise of angle k
   for (std::size_t k = 0; k < kept.size(); ++k) {
@@ -153,7 +162,28 @@ std::vector<LocalStar::Plane> LocalStar::planes_of_groups() const {
   return planes;
 }
 
+Vec3d LocalStar::widest_normal(const Vec3d& normal, const Vec3d& point) const {
+  // Directions of close points are not precise, so the points that are furthest apart give the normal.
+  std::vector<Vec3d> in_plane;
+  for (const Vec3d& g : groups_) {
+    if (std::abs(dot(g - point, normal)) <= angle_tolerance_) in_plane.push_back(g - point);
+  }
+  Vec3d furthest;
+  for (const Vec3d& g : in_plane) {
+    if (squared_length(g) > squared_length(furthest)) furthest = g;
+  }
+  Vec3d widest;
+  for (const Vec3d& g : in_plane) {
+    const Vec3d across = cross(furthest, g);
+    if (squared_length(across) > squared_length(widest)) widest = across;
+  }
+  if (!(length(widest) > 0)) return normal;
+  const Vec3d out = unit(widest);
+  return dot(out, normal) < 0 ? -out : out;
+}
+
 std::vector<Vec3d> LocalStar::facet_normals() const {
+  constexpr std::size_t many = 8;
   std::vector<Vec3d> out;
   // Many gradients may lie in one facet, so no facet is found twice.
   std::vector<std::pair<Vec3d, double>> facets;
@@ -170,7 +200,7 @@ std::vector<Vec3d> LocalStar::facet_normals() const {
       for (std::size_t c = b + 1; c < groups_.size(); ++c) {
         const Vec3d normal = cross(groups_[b] - groups_[a], groups_[c] - groups_[a]);
         if (!(length(normal) > 1e-12) || is_in_a_facet(groups_[a], groups_[b], groups_[c])) continue;
-        const Vec3d h = unit(normal);
+        const Vec3d h = groups_.size() > many ? widest_normal(unit(normal), groups_[a]) : unit(normal);
         const double level = dot(groups_[a], h);
         const auto is_lowest = [&](double sign) {
           return std::all_of(groups_.begin(), groups_.end(),
@@ -179,7 +209,6 @@ std::vector<Vec3d> LocalStar::facet_normals() const {
         const std::size_t before = out.size();
         if (is_lowest(1)) out.push_back(h);
         if (is_lowest(-1)) out.push_back(-h);
-        constexpr std::size_t many = 8;
         if (out.size() > before && groups_.size() > many) facets.emplace_back(h, level);
       }
     }

@@ -62,6 +62,8 @@ class LocalStar {
   /// Returns the closest of some sites beside a direction: on the side of `across`, which is at right angles to it.
   [[nodiscard]] Index site_beside(const std::vector<const Member*>& near, const Vec3d& direction,
                                   const Vec3d& across) const;
+  /// Returns a more precise normal of the plane through gradients near a plane.
+  [[nodiscard]] Vec3d widest_normal(const Vec3d& normal, const Vec3d& point) const;
   /// Returns the directions in which at least three gradients have the same, least rate.
   [[nodiscard]] std::vector<Vec3d> facet_normals() const;
   void add(const Vec3d& direction, std::vector<SeamRay>& rays) const;

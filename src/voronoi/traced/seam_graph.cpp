@@ -18,6 +18,8 @@ constexpr std::uint32_t none = TracedStructure::none;
 constexpr std::size_t group_size = 64;
 /// One trace may take this part of the work: traces of a group do not know of each other.
 constexpr std::uint64_t share_of_trace = 8;
+/// The seams that leave a junction with more sites are found only once.
+constexpr std::size_t many_sites = 12;
 
 /// Returns the middle of the longest piece of a curve. Traces have many points near their ends, so it is far from both.
 std::pair<Vec3d, Vec3d> middle_of(const std::vector<Vec3d>& points) {
@@ -243,6 +245,7 @@ std::uint32_t SeamGraph::find_junction(const Vec3d& at, const std::vector<Index>
 std::uint32_t SeamGraph::junction_at(const Vec3d& at, const std::vector<Index>& found, std::vector<LeavingSeam> seams) {
   const std::uint32_t known = find_junction(at, found);
   if (known != none) return known;
+  if (seams.empty()) seams = leaving_seams(sites_, tracer_, at, found);
   const auto number = static_cast<std::uint32_t>(out_.junctions.size());
   out_.junctions.push_back({at, sites_.distance(found[0], at), found, none});
   junctions_by_x_.emplace(at.x, number);
@@ -283,7 +286,9 @@ SeamGraph::Traced SeamGraph::trace_seam(const Vec3d& at, const LeavingSeam& seam
   const SeamTracer tracer(sites_, work);
   Traced out{tracer.trace(seam.curve, seam.start, seam.ray.direction, left), {}, 0};
   if (seam.start != at) out.trace.points.insert(out.trace.points.begin(), at);
-  if (out.trace.end == TraceEnd::event && find_junction(out.trace.points.back(), out.trace.sites) == none) {
+  // Many seams may arrive at a junction of many sites at once.
+  if (out.trace.end == TraceEnd::event && out.trace.sites.size() <= many_sites &&
+      find_junction(out.trace.points.back(), out.trace.sites) == none) {
     out.seams = leaving_seams(sites_, tracer, out.trace.points.back(), out.trace.sites);
   }
   out.work = work.done;

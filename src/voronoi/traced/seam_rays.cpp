@@ -38,7 +38,19 @@ std::vector<LeavingSeam> seams_in_plane(const TracedSites& sites, const SeamTrac
     own.direction = ray.direction;
     out.push_back({std::move(own), *curve, start, unit(start - at)});
   }
-  return out;
+  // Fewer sites with the same distances lie on the same curve. They were found where others differ by the tolerance.
+  const auto is_part = [&](const LeavingSeam& seam) {
+    const std::vector<Index>& own = seam.ray.sites;
+    return std::any_of(out.begin(), out.end(), [&](const LeavingSeam& other) {
+      const std::vector<Index>& all = other.ray.sites;
+      return all.size() > own.size() && std::includes(all.begin(), all.end(), own.begin(), own.end());
+    });
+  };
+  std::vector<LeavingSeam> kept;
+  for (const LeavingSeam& seam : out) {
+    if (!is_part(seam)) kept.push_back(seam);
+  }
+  return kept;
 }
 
 }  // namespace
