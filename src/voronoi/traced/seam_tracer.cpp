@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "voronoi/label_geometry.hpp"
+#include "voronoi/traced/clear_way.hpp"
 #include "voronoi/traced/line_contact.hpp"
 
 namespace blum::voronoi {
@@ -30,6 +31,12 @@ constexpr double touching = 512;
 struct SeamTracer::Room {
   double step = 0;
   Index site = 0;
+};
+
+/// Where a site joins a curve.
+struct SeamTracer::Event {
+  Vec3d at;
+  TracedSites::Closest there;
 };
 
 bool SeamTracer::is_straight(const TracedCurve& curve) const {
@@ -138,9 +145,10 @@ std::optional<TracedCurve> SeamTracer::curve_of(const std::vector<Index>& found,
   std::vector<TracedSurface> surfaces;
   constexpr double same_foot = 1e-9;
   std::vector<Vec3d> gradients;
+  constexpr std::size_t many = 16;  // then, surfaces with the first site are enough
   for (std::size_t a = 0; a < found.size(); ++a) {
     const Vec3d own = sites_.gradient(found[a], at);
-    for (std::size_t b = a + 1; b < found.size(); ++b) {
+    for (std::size_t b = a + 1; b < found.size() && (a == 0 || found.size() <= many); ++b) {
       if (sites_.side_between(found[a], found[b]) != nullptr ||
           length(own - sites_.gradient(found[b], at)) > same_foot) {
         surfaces.push_back(between(found[a], found[b], at + towards * (1e-3 * sites_.distance(found[a], at))));
@@ -174,11 +182,17 @@ std::optional<TracedCurve> SeamTracer::curve_of(const std::vector<Index>& found,
   return is_found ? std::optional(curve) : std::nullopt;
 }
 
-bool SeamTracer::flat_meeting(const std::vector<Index>& near, const Vec3d& at) const {
-  const double radius = sites_.distance(near[0], at);
+bool SeamTracer::is_meeting(const std::vector<Index>& near, const Vec3d& at) const {
+  constexpr std::size_t many = 8;
+  const double tolerance = sites_.tolerance();
+  double radius = sites_.distance(near[0], at);
+  if (near.size() > many) {
+    for (const Index i : near) radius = std::min(radius, sites_.distance(i, at));
+  }
   return std::all_of(near.begin(), near.end(), [&](Index i) {
-    return sites_[i].kind == SiteKind::face && std::abs(sites_.distance(i, at) - radius) <= sites_.tolerance() &&
-           sites_.sides_at(i, at, 64 * sites_.tolerance()).empty();
+    return (sites_[i].kind == SiteKind::face || near.size() > many) &&
+           std::abs(sites_.distance(i, at) - radius) <= tolerance && sites_.outside(i, at, tolerance) <= tolerance &&
+           sites_.sides_at(i, at, 64 * tolerance).empty();
   });
 }
 
@@ -207,7 +221,7 @@ std::vector<Vec3d> SeamTracer::seam_points(const std::vector<Index>& near, const
         const Vec3d first = slope(surfaces[a], *found), second = slope(surfaces[b], *found);
         if (length(cross(first, second)) < least_angle * length(first) * length(second)) continue;
         if (length(first) < 1e-9 || length(second) < 1e-9) continue;
-        if (flat_meeting(near, *found)) return {*found};
+        if (is_meeting(near, *found)) return {*found};
         const bool is_known = std::any_of(
             out.begin(), out.end(), [&](const Vec3d& p) { return length(p - *found) <= sites_.precision().apart; });
         if (!is_known) out.push_back(*found);
@@ -294,20 +308,30 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve
   return out;
 }
 
-std::optional<Vec3d> SeamTracer::event_with(const TracedCurve& curve, Index site, const Vec3d& x, const Vec3d& along,
-                                            double radius) const {
-  std::optional<Vec3d> best;
+bool SeamTracer::may_meet(const TracedCurve& curve, Index site, const Vec3d& at) const {
+  const double tolerance = (1 + 1e-9) * sites_.tolerance();
+  const double radius = sites_.distance(curve.sites[0], at);
+  const auto is_at = [&](Index i) {
+    return std::abs(sites_.distance(i, at) - radius) <= tolerance && sites_.outside(i, at, tolerance) <= tolerance;
+  };
+  return is_at(site) && std::all_of(curve.sites.begin(), curve.sites.end(), is_at);
+}
+
+std::optional<SeamTracer::Event> SeamTracer::event_with(const TracedCurve& curve, Index site, const Vec3d& x,
+                                                        const Vec3d& along, double radius) const {
+  std::optional<Event> best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](const TracedSurface& surface, double most) {
     const auto found = solve({curve.surfaces[0], curve.surfaces[1], surface}, x, radius);
     if (!found) return;
     const double way = dot(*found - x, along);
     if (way <= 0 || way >= std::min(least, most) || way < 0.5 * length(*found - x)) return;
-    const TracedSites::Closest there = closest(*found, sites_.tolerance(), curve.sites[0]);
+    if (!may_meet(curve, site, *found)) return;
+    TracedSites::Closest there = closest(*found, sites_.tolerance(), curve.sites[0]);
     if (!contains(there.sites, site)) return;
     if (!std::includes(there.sites.begin(), there.sites.end(), curve.sites.begin(), curve.sites.end())) return;
     least = way;
-    best = found;
+    best = {*found, std::move(there)};
   };
   const double infinite = least;
   sites_.for_each_side(site, x, 2 * radius, [&](const DomainSide& side) {
@@ -355,6 +379,18 @@ std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, 
     if (are_free(near) && are_free(rooms(curve, x, along, radius, size))) return v;
   }
   return std::nullopt;
+}
+
+std::optional<CurveSamples> SeamTracer::samples_of(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                   double length) const {
+  CurveSamples out{length, {x}};
+  for (std::size_t k = 1; k < CurveSamples::count; ++k) {
+    const double way = length * CurveSamples::share(k);
+    const auto next = point_in_plane(curve, x + along * way, along);
+    if (!next || blum::length(*next - x) > 1.25 * way) return std::nullopt;
+    out.points[k] = *next;
+  }
+  return out;
 }
 
 bool SeamTracer::is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to,
@@ -478,7 +514,8 @@ struct SeamTracer::Run {
   Vec3d along;
   double way = 0;
   double radius = 0;
-  double most = 0;  ///< longest step
+  double most = 0;                               ///< longest step
+  std::optional<Index> expected = std::nullopt;  ///< probably the next site that becomes as close
 
   [[nodiscard]] double tolerance() const { return tracer.sites_.tolerance(); }
 
@@ -563,20 +600,25 @@ struct SeamTracer::Run {
     constexpr std::size_t most_tried = 6;
     // A step must not end at an event: it would then lie behind.
     const double ahead = 1.0625 * most;
+    std::vector<Index> tried;
+    if (expected) tried.push_back(*expected);
     for (std::size_t r = 0; r < near.size() && r < most_tried && near[r].step < ahead; ++r) {
-      const auto found = tracer.event_with(curve, near[r].site, x, along, radius);
-      if (!found || length(*found - start) <= tracer.sites_.precision().apart) continue;
-      const double size = length(*found - x);
-      if (size > 2 * most) continue;
-      const TracedSites::Closest there = tracer.closest(*found, tolerance(), curve.sites[0]);
-      if (there.sites == left && length(*found - start) <= tracer.sites_.blur(there.radius)) continue;
+      if (expected != near[r].site) tried.push_back(near[r].site);
+    }
+    for (const Index site : tried) {
+      const auto event = tracer.event_with(curve, site, x, along, radius);
+      if (!event) continue;
+      const auto& [found, there] = *event;
+      const double size = length(found - x);
+      if (length(found - start) <= tracer.sites_.precision().apart || size > 2 * most) continue;
+      if (there.sites == left && length(found - start) <= tracer.sites_.blur(there.radius)) continue;
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
       });
-      if (!is_first && !tracer.is_clear(curve, x, *found, there.sites)) continue;
-      if (ends_at_vertex(*found, there)) return true;
-      out.points.push_back(*found);
-      end_at(refined(near[r].site, there.sites), there.radius);
+      if (!is_first && !tracer.is_clear(curve, x, found, there.sites)) continue;
+      if (ends_at_vertex(found, there)) return true;
+      out.points.push_back(found);
+      end_at(refined(site, there.sites), there.radius);
       return true;
     }
     return false;
@@ -620,12 +662,33 @@ struct SeamTracer::Run {
   }
 
   /// Takes a long step if sites come close without reaching the curve. They would make all steps short.
-  bool leaps(double step) {
-    const double leap = std::min(0.1 * radius, 32 * step);
-    if (!(step < 0.5 * leap && way > 64 * tolerance())) return false;
-    const auto next = tracer.point_in_plane(curve, x + along * leap, along);
-    if (!next || length(*next - x) >= 1.5 * leap || !tracer.is_clear(curve, x, *next, curve.sites)) return false;
-    return tracer.closest(*next, tolerance(), curve.sites[0]).sites == curve.sites && go_to(next, leap);
+  /// @param near  all sites that the curve may reach within twice the longest step.
+  bool leaps(double step, const std::vector<Room>& near) {
+    expected.reset();
+    double leap = std::min(0.125 * radius, most);
+    constexpr double least = 8;  // in steps: shorter leaps take longer than steps
+    if (!(least * step < leap && way > 64 * tolerance())) return false;
+    const auto others_within = [&](double size) {
+      std::vector<Index> out;
+      for (const Room& room : near) {
+        if (room.step < 1.5 * size) out.push_back(room.site);
+      }
+      return out;
+    };
+    constexpr int most_tries = 3;
+    for (int k = 0; k < most_tries && least * step < leap; ++k, leap *= 0.125) {
+      const auto samples = tracer.samples_of(curve, x, along, leap);
+      if (!samples) continue;
+      const auto clear = clear_way(tracer.sites_, *samples, curve.sites, others_within(leap));
+      if (!clear) continue;
+      expected = clear->site;
+      if (!(least * step < clear->length)) return false;
+      const auto next = clear->site ? tracer.point_in_plane(curve, x + along * clear->length, along)
+                                    : std::optional(samples->points.back());
+      if (!next || tracer.closest(*next, tolerance(), curve.sites[0]).sites != curve.sites) continue;
+      if (go_to(next, clear->length)) return true;
+    }
+    return false;
   }
 
   /// Returns true if a step to a point of the curve passes an event: other sites are clearly closer there. Along
@@ -659,6 +722,16 @@ struct SeamTracer::Run {
   }
 };
 
+double SeamTracer::first_step(const TracedCurve& curve) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Index i : curve.sites) {
+    if (sites_[i].kind == SiteKind::vertex) continue;
+    const Vec3d size = sites_[i].box.size();
+    least = std::min(least, std::max({size.x, size.y, size.z}));
+  }
+  return std::max(least, 64 * sites_.tolerance());
+}
+
 Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
                         const std::vector<Index>& left) const {
   Run run{*this, curve, start, left, {}, start, tangent(curve, start)};
@@ -666,14 +739,17 @@ Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3
   if (dot(run.along, towards) < 0) run.along = -run.along;
   if (length(run.along) == 0) return std::move(run.out);
   const double longest = is_straight(curve) ? longest_step_of_line : longest_step;
+  // Seams of small sites are short, and sites near a short step are few.
+  double likely = first_step(curve);
   for (int k = 0; k < most_steps && !work_.is_exhausted(); ++k) {
     run.radius = sites_.distance(curve.sites[0], run.x);
-    run.most = longest * std::max(run.radius, 64 * sites_.tolerance());
+    run.most = std::min(longest * std::max(run.radius, 64 * sites_.tolerance()), likely);
+    likely *= 2;
     const std::vector<Room> near = rooms(curve, run.x, run.along, run.radius, 2 * run.most);
     if (run.ends_at_surface(k == 0, near) || run.ends_at_event(near)) break;
     std::optional<double> step = run.long_enough(near.empty() ? run.most : std::min(run.most, near.front().step), near);
     if (!step) break;
-    if (run.leaps(*step)) continue;
+    if (run.leaps(*step, near)) continue;
     if (!run.advances(*step) || run.is_closed(*step)) break;
   }
   return std::move(run.out);

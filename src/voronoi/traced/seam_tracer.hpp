@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "blum/core/vec3.hpp"
+#include "voronoi/traced/clear_way.hpp"
 #include "voronoi/traced/trace_work.hpp"
 #include "voronoi/traced/traced_sites.hpp"
 
@@ -89,10 +90,11 @@ class SeamTracer {
 
  private:
   struct Room;
+  struct Event;
   struct Run;
-  /// Returns true if faces meet in a point, all inside their domains. Their distances are linear, so no seam of some of
-  /// them passes near.
-  [[nodiscard]] bool flat_meeting(const std::vector<TracedSites::Index>& near, const Vec3d& at) const;
+  /// Returns true if faces, or many sites, meet in a point, all inside their domains. Their distances are linear, or
+  /// nearly so, and no seam of some of them passes near.
+  [[nodiscard]] bool is_meeting(const std::vector<TracedSites::Index>& near, const Vec3d& at) const;
   [[nodiscard]] std::vector<Room> rooms(const TracedCurve& curve, const Vec3d& x, const Vec3d& along, double radius,
                                         double most) const;
   /// Returns a lower bound on how much further a site is than the radius.
@@ -103,8 +105,12 @@ class SeamTracer {
   [[nodiscard]] std::vector<Room> rooms_of_bend(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                 double radius, double most) const;
   [[nodiscard]] std::optional<Vec3d> solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const;
-  [[nodiscard]] std::optional<Vec3d> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
+  /// Returns true if a site and the sites of a curve have one distance from a point, which lies in their domains.
+  [[nodiscard]] bool may_meet(const TracedCurve& curve, TracedSites::Index site, const Vec3d& at) const;
+  [[nodiscard]] std::optional<Event> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                                 const Vec3d& along, double radius) const;
+  /// Returns the length of a first step: the size of the curve's smallest site.
+  [[nodiscard]] double first_step(const TracedCurve& curve) const;
   /// Returns the point near x where a curve touches the region of a site, if it does so within the tolerance.
   [[nodiscard]] std::optional<Vec3d> touching_point(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                                     double radius) const;
@@ -113,6 +119,9 @@ class SeamTracer {
   [[nodiscard]] std::optional<Vec3d> meeting_point(const TracedCurve& curve, const Vec3d& x, double radius) const;
   /// Sets the end of a trace that reached the surface: at a vertex if one is close.
   void end_at_border(Trace& trace) const;
+  /// Returns points of a curve on a way along its tangent; nothing if it bends much.
+  [[nodiscard]] std::optional<CurveSamples> samples_of(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
+                                                       double length) const;
   /// Returns true if no other site is as close at points of the curve between two of its points.
   /// @param at_end  the closest sites of `to`: shortly before it, they may be as close within the tolerance.
   [[nodiscard]] bool is_clear(const TracedCurve& curve, const Vec3d& from, const Vec3d& to,
