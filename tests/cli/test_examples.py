@@ -105,6 +105,10 @@ def inputs(tmp_path_factory):
         run("medial", folder / "part.stl", "-o", folder / name, "--resolution", 32)
     run("medial", folder / "part.stl", "-o", folder / "part.vtp", "--resolution", 32, "--theta", "20,60")
     run("medial", folder / "bunny.obj", "-o", folder / "bunny.vtp", "--resolution", 32)
+    for name in ("grid.vtp", "before.vtp"):
+        run("medial", folder / "part.stl", "-o", folder / name, "--resolution", 32, "--patch-angle", 30)
+    for name in ("exact.vtp", "after.vtp"):
+        run("voronoi", folder / "part.stl", "-o", folder / name, "--medial", "--patch-angle", 30)
     run("medial", folder / "scan.nii.gz", "-o", folder / "vessels.npz", "--label", 1)
     return folder
 
