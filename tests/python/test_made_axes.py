@@ -7,6 +7,7 @@ import warnings
 
 import blum
 import pytest
+from amount import some
 from made import made_solid, names
 
 #: Holes so thin and slanted that the model would need millions of boxes. Their axes are reported as not certified.
@@ -43,7 +44,8 @@ def test_axes_of_made_solids_are_certified(family, variant, resolution):
             warnings.simplefilter("ignore", blum.InputWarning)
             certificates = [axis.certified(60.0).certificate]
     else:
-        certificates = [blum.certify(axis.simplify(theta, fit=theta > 20), mesh) for theta in (20.0, 60.0)]
+        thetas = some((60.0, 20.0), 1 if family == "crossing_rods" else 2)  # this one takes half a minute
+        certificates = [blum.certify(axis.simplify(theta, fit=theta > 20), mesh) for theta in thetas]
     for found in certificates:
         assert found, found.mismatches
         assert found.homology.across == 0
