@@ -86,7 +86,8 @@ def test_medial_axes(tmp_path):
     assert found.footprints.shape == (len(found.vertices), 2, 3)
     distances = np.linalg.norm(found.footprints - found.vertices[:, None], axis=2)
     assert np.abs(distances - found.radius[:, None]).max() < 1e-8
-    assert found.separation_angle.min() > 0
+    assert found.separation_angle[found.radius > 0].min() > 0
+    assert not found.separation_angle[found.radius == 0].any(), "both footprints are the vertex itself"
     for theta in (0, 60, 120):
         axis = found.medial_axis(theta)
         assert axis.certificate.holds and axis.homology() == (1, 4, 0)
