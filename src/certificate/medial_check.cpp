@@ -296,6 +296,7 @@ struct AxisPoint {
   double angle = 0;  ///< separation angle that its cell claims, degrees
   double size = 0;   ///< length of the longest side of that cell
   double depth = 0;  ///< largest radius at the corners of that cell
+  Vec3d normal{};    ///< of that cell, of any length; 0 for vertices and curves
 };
 
 /// Returns the number of samples: 16 per unit, at least 64 and at most `most`; 0 unless `units` is above 0.
@@ -325,10 +326,20 @@ class Middle {
     const double floor = allowed_.floor_at(point.angle);
     TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, floor, allowed_.middle);
     if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, floor);
-    return ball.radius > 0 ? Found{distance_to_middle(point.at, ball), ball.radius} : Found{};
+    if (!(ball.radius > 0) || is_aslant(point, ball)) return {};
+    return {distance_to_middle(point.at, ball), ball.radius};
   }
 
  private:
+  /// Returns true if a cell does not stand between two neighbouring facets: in a fine round part, every point is close
+  /// to a wall between some of these, but only cells along such a wall may count.
+  [[nodiscard]] bool is_aslant(const AxisPoint& point, const TouchingBall& ball) const {
+    constexpr double most_aslant = 60;  ///< degrees between normals of cell and wall
+    if (ball.angle >= allowed_.noise || !(squared_length(point.normal) > 0)) return false;
+    const double angle = degrees_between(point.normal, ball.first - ball.second);
+    return std::min(angle, 180 - angle) > most_aslant;
+  }
+
   /// Returns true if the solid is thin around a surface point: the other side is close in all directions.
   [[nodiscard]] bool is_thin(const AxisPoint& point) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -499,8 +510,12 @@ class SheetPoints {
     Random random(0x5a3eULL + k);
     const std::uint32_t t = triangle(k, random);
     const std::array<Vec3d, 3> corners = corners_of(axis_, t);
-    return {random_point(corners, random), body_of_[axis_.triangles[t][0]], axis_.triangle_angle[t],
-            longest_side(corners), deepest(axis_, axis_.triangles[t])};
+    return {random_point(corners, random),
+            body_of_[axis_.triangles[t][0]],
+            axis_.triangle_angle[t],
+            longest_side(corners),
+            deepest(axis_, axis_.triangles[t]),
+            cross(corners[1] - corners[0], corners[2] - corners[0])};
   }
   [[nodiscard]] std::int32_t sheet(std::size_t k) const {
     Random random(0x5a3eULL + k);

@@ -248,7 +248,8 @@ class ShellOracle : public SolidOracle {
     const TriangleSearch::Nearest closest = search_.nearest(0.5 * (a + b), body);
     if (!(closest.distance <= nothing)) return false;
     const std::array<Vec3d, 3> corners = corners_of(mesh_, closest.triangle);
-    return std::max(squared_distance(a, corners), squared_distance(b, corners)) <= nothing * nothing;
+    if (std::max(squared_distance(a, corners), squared_distance(b, corners)) > nothing * nothing) return false;
+    return has_one_wall(a, closest.triangle, nothing, body) && has_one_wall(b, closest.triangle, nothing, body);
   }
 
   [[nodiscard]] bool is_clear(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
@@ -362,6 +363,24 @@ class ShellOracle : public SolidOracle {
     const double cubed = longest * std::sqrt(longest);
     if (shells_.outwards[triangle] == 0 || !(size * distance > rounding * cubed)) return std::nullopt;
     return shells_.outwards[triangle] * dot(p - a, normal) / size;
+  }
+  /// Returns true if the triangles within a distance of a point are joined to the given one by edges among them. At a
+  /// narrow gap they are not.
+  [[nodiscard]] bool has_one_wall(const Vec3d& p, std::uint32_t triangle, double within, std::uint32_t body) const {
+    std::vector<std::uint32_t> near;
+    search_.find_within(p, 2 * within, body, near);
+    std::vector<std::uint32_t> line{triangle};
+    std::unordered_set<std::uint32_t> left(near.begin(), near.end());
+    left.erase(triangle);
+    while (!line.empty() && !left.empty()) {
+      const std::uint32_t t = line.back();
+      line.pop_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (left.erase(shells_.beside[3 * std::size_t{t} + k]) > 0)
+          line.push_back(shells_.beside[3 * std::size_t{t} + k]);
+      }
+    }
+    return left.empty();
   }
   [[nodiscard]] bool are_beside(std::uint32_t triangle, std::uint32_t other) const {
     const auto first = shells_.beside.begin() + 3 * static_cast<std::ptrdiff_t>(triangle);

@@ -93,11 +93,20 @@ std::vector<Vec3d> all_directions() {
 void lead_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& surface, const Vec3d& to, Way& way) {
   const Vec3d from = way.back();
   if (solid.is_clear(from, to, body)) return;
+  if (!(solid.depth(from, body) > 0)) return;
   const double size = std::max(length(from - surface), length(to - surface));
+  // The way must not pass a hole on the other side than the edge. So it forms triangles with the surface point that
+  // lie in the body, except for a tip at that point.
+  constexpr double tip = 1e-3;
+  const auto is_filled = [&](const Vec3d& p, const Vec3d& q) {
+    const Vec3d near_p = surface + (p - surface) * tip;
+    const Vec3d near_q = surface + (q - surface) * tip;
+    return solid.is_clear({p, q, near_p}, body) && solid.is_clear({q, near_q, near_p}, body);
+  };
   for (const double scale : {1.0, 0.25, 4.0}) {
     for (const Vec3d& direction : all_directions()) {
       const Vec3d at = surface + direction * (scale * size);
-      if (!solid.is_clear(from, at, body) || !solid.is_clear(at, to, body)) continue;
+      if (!is_filled(from, at) || !is_filled(at, to)) continue;
       way.push_back(at);
       return;
     }
