@@ -58,7 +58,6 @@ class CellsBetween {
   [[nodiscard]] bool holds(const SeenBall& seen) const {
     const TriangleSearch::Nearest nearest = search_.nearest(seen.ball.centre);
     if (nearest.distance <= allowed_.beside_sheet()) return true;
-    if (nearest.distance > std::max(allowed_.missing, 0.5 * seen.ball.radius)) return false;
     const auto [a, b, c] = corners_of(MeshView(cells_), nearest.triangle);
     const Vec3d p = (a + b + c) / 3.0;
     const Vec3d foot = solid_.closest_point(p, seen.body);
