@@ -42,6 +42,8 @@ Allowances allowances(const KnownSolid& solid, const CertificateOptions& options
   all.lambda = options.lambda ? *options.lambda * factor : 0;
   all.apart = 4 * all.voxel + all.lambda;
   all.of_voxels = solid.solid->grain() > 0;
+  constexpr double least_theta = 0.5;  // below it, axes of grids have cells of any direction between facets
+  all.of_facets = !all.of_voxels && options.theta && *options.theta >= least_theta;
   all.rounding = 1e-5 * solid.solid->diagonal();
   all.noise = solid.solid->grain() > 0 && solid.solid->slack() == 0 ? noise_of_images : noise_of_meshes;
   return all;

@@ -35,6 +35,7 @@ struct Allowances {
   double rounding = 0;  ///< shorter lengths count as rounding errors
   double noise = 0;     ///< degrees: walls at a smaller angle count as one
   bool of_voxels = false;
+  bool of_facets = false;  ///< true if sheets between facets are judged by these facets
 
   static constexpr double steep = 80;      ///< degrees
   static constexpr double opposite = 150;  ///< degrees: walls at this angle are on opposite sides of a thin part
@@ -56,7 +57,7 @@ struct Allowances {
   /// them.
   [[nodiscard]] double floor_at(double claim) const {
     constexpr double least = 0.1;
-    return of_voxels ? noise : std::min(noise, std::max(0.5 * claim, least));
+    return !of_facets ? noise : std::min(noise, std::max(0.5 * claim, least));
   }
   /// Returns how far the centre of a ball of this radius may be from the axis. Sheets end within about a voxel of their
   /// exact end.
