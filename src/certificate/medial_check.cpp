@@ -331,8 +331,8 @@ class Middle {
   }
 
  private:
-  /// Returns true if a cell does not stand between two neighbouring facets: in a fine round part, every point is close
-  /// to a wall between some of these, but only cells along such a wall may count.
+  /// Returns true if a ball touches two neighbouring facets, but the cell does not lie along the wall between them. In
+  /// a fine round part, every point is close to such a wall.
   [[nodiscard]] bool is_aslant(const AxisPoint& point, const TouchingBall& ball) const {
     constexpr double most_aslant = 60;  ///< degrees between normals of cell and wall
     if (ball.angle >= allowed_.noise || !(squared_length(point.normal) > 0)) return false;
