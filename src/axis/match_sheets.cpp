@@ -193,25 +193,25 @@ std::vector<Closest> closest_of(const std::vector<Sample>& samples, const Sheets
 }
 
 /// Adds to the sheets of an axis the parts of their area that lie on sheets of the other one.
-void add_overlaps(Sheets& sheets, double whole_area, Sheets& other, int points, double tolerance,
+void add_overlaps(Sheets& sampled, double whole_area, Sheets& target, int points, double tolerance,
                   const Context& context) {
-  const std::vector<Sample> samples = samples_of(sheets, whole_area, static_cast<std::size_t>(points));
-  const std::vector<Closest> closest = closest_of(samples, other, context);
-  std::vector<std::map<std::uint32_t, std::size_t>> on(sheets.list().size());
-  std::vector<std::size_t> count(sheets.list().size(), 0);
+  const std::vector<Sample> samples = samples_of(sampled, whole_area, static_cast<std::size_t>(points));
+  const std::vector<Closest> closest = closest_of(samples, target, context);
+  std::vector<std::map<std::uint32_t, std::size_t>> on(sampled.list().size());
+  std::vector<std::size_t> count(sampled.list().size(), 0);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const std::uint32_t own = samples[k].place;
     ++count[own];
     if (closest[k].place == none) continue;
-    MatchedSheet& sheet = sheets.list()[own];
+    MatchedSheet& sheet = sampled.list()[own];
     sheet.largest_distance = std::max(sheet.largest_distance.value_or(0), closest[k].distance);
     if (closest[k].distance <= tolerance) ++on[own][closest[k].place];
   }
   for (std::size_t s = 0; s < on.size(); ++s) {
-    MatchedSheet& sheet = sheets.list()[s];
+    MatchedSheet& sheet = sampled.list()[s];
     for (const auto& [place, points_there] : on[s]) {
       const double share = static_cast<double>(points_there) / static_cast<double>(count[s]);
-      sheet.overlaps.push_back({other.list()[place].sheet, share * sheet.area, share});
+      sheet.overlaps.push_back({target.list()[place].sheet, share * sheet.area, share});
       sheet.on_other += share * sheet.area;
     }
     std::sort(sheet.overlaps.begin(), sheet.overlaps.end(), [](const SheetOverlap& a, const SheetOverlap& b) {
