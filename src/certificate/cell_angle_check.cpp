@@ -13,6 +13,7 @@
 #include "certificate/allowances.hpp"
 #include "certificate/angle.hpp"
 #include "certificate/checks.hpp"
+#include "certificate/sampling.hpp"
 
 namespace blum::verifier {
 namespace {
@@ -42,11 +43,6 @@ struct Sized {
 void add(std::vector<Sized>& cells, double size, std::uint32_t cell) {
   if (!(size > 0) || !std::isfinite(size)) return;
   cells.push_back({(cells.empty() ? 0 : cells.back().end) + size, cell});
-}
-
-double area(const MedialView& axis, const std::array<std::uint32_t, 3>& corners) {
-  const Vec3d& p = axis.positions[corners[0]];
-  return 0.5 * length(cross(axis.positions[corners[1]] - p, axis.positions[corners[2]] - p));
 }
 
 /// Returns the largest angle at p between closest surface points: those of p and of 14 points about `reach` away from
@@ -82,7 +78,7 @@ class Angles {
     double all = 0;
     double below = 0;
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
-      const double size = area(axis_, axis_.triangles[t]);
+      const double size = triangle_area(axis_, t);
       if (!std::isfinite(size)) continue;
       const double least = least_angle(axis_.triangles[t]);
       if (least < noise) continue;
@@ -136,7 +132,7 @@ class Angles {
   void compare_with_surface(AngleCheck& check, const Context& context) const {
     std::vector<Sized> triangles;
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
-      if (axis_.triangle_angle[t] > 0) add(triangles, area(axis_, axis_.triangles[t]), t);
+      if (axis_.triangle_angle[t] > 0) add(triangles, triangle_area(axis_, t), t);
     }
     std::vector<Sized> curves;
     for (std::uint32_t n = 0; n < axis_.edges.size(); ++n) {

@@ -80,6 +80,12 @@ TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3
   return ball;
 }
 
+TouchingBall grown_ball_from_near(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
+                                  double floor, double near) {
+  const TouchingBall ball = grown_ball(solid, body, p, first, floor, near);
+  return ball.radius > 0 ? ball : grown_ball(solid, body, p, first, floor);
+}
+
 double distance_to_middle(const Vec3d& p, const TouchingBall& ball) {
   return length(p - ball.centre) * std::sin(0.5 * ball.angle / degrees_per_radian);
 }

@@ -63,6 +63,11 @@ class ShrinkingBall {
 [[nodiscard]] TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
                                       double floor, double more = 0);
 
+/// Calls grown_ball() with a first ball that exceeds the distance of p from the surface by `near`. In most cases
+/// another wall is that close. If none is found, the first ball has twice the radius.
+[[nodiscard]] TouchingBall grown_ball_from_near(const SolidOracle& solid, std::uint32_t body, const Vec3d& p,
+                                                const Vec3d& first, double floor, double near);
+
 /// Returns the approximate distance of a point from the middle between the two walls that a ball touches.
 [[nodiscard]] double distance_to_middle(const Vec3d& p, const TouchingBall& ball);
 

@@ -322,10 +322,8 @@ class Middle {
     const double depth = length(point.at - foot);
     const double nothing = 1e-9 * solid_.diagonal(point.body);
     if (!(depth > nothing)) return {is_thin(point) ? 0 : HUGE_VAL, 0};
-    // In most cases another wall is close by.
-    const double floor = allowed_.floor_at(point.angle);
-    TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, floor, allowed_.middle);
-    if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, floor);
+    const TouchingBall ball =
+        grown_ball_from_near(solid_, point.body, point.at, foot, allowed_.floor_at(point.angle), allowed_.middle);
     if (!(ball.radius > 0) || is_aslant(point, ball)) return {};
     return {distance_to_middle(point.at, ball), ball.radius};
   }
@@ -386,11 +384,6 @@ double deepest(const MedialView& axis, const std::array<std::uint32_t, 3>& corne
   return std::max({axis.radius[corners[0]], axis.radius[corners[1]], axis.radius[corners[2]]});
 }
 
-double area(const MedialView& axis, std::size_t t) {
-  const auto& [a, b, c] = axis.triangles[t];
-  return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
-}
-
 /// Returns the separation angle of a vertex's footprints in degrees.
 double angle_at(const MedialView& axis, std::uint32_t v) {
   const Vec3d& p = axis.positions[v];
@@ -411,7 +404,7 @@ class Claimed {
         two_walls_(std::max(theta, 2 * noise)) {
     for (std::uint32_t v = 0; has_footprints && v < angles_.size(); ++v) angles_[v] = angle_at(axis, v);
     for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
-      const double size = area(axis, t);
+      const double size = triangle_area(axis, t);
       if (std::isfinite(size)) all_ += size;
       if (!(axis.triangle_angle[t] > theta)) continue;
       sheets_.add(size, t);
@@ -568,7 +561,7 @@ void look_at_small_sheets(const MedialView& axis, const Claimed& claimed, const 
                           const Context& context) {
   std::map<std::int32_t, Spread> small;
   for (const std::uint32_t t : claimed.sheets().cells()) {
-    if (judge.samples(axis.sheet[t]) < enough_samples) small[axis.sheet[t]].add(area(axis, t), t);
+    if (judge.samples(axis.sheet[t]) < enough_samples) small[axis.sheet[t]].add(triangle_area(axis, t), t);
   }
   std::vector<const Spread*> chosen;
   for (const auto& [sheet, spread] : small) {

@@ -12,15 +12,6 @@ namespace {
 
 using Walls = std::array<std::uint32_t, 2>;
 
-/// Returns the pair of walls that a ball touches; nullopt if it touches an edge between walls.
-std::optional<Walls> sure_walls(const SolidOracle& solid, const SeenBall& seen) {
-  const Walls first = solid.walls_at(seen.ball.first, seen.body);
-  const Walls second = solid.walls_at(seen.ball.second, seen.body);
-  if (first[0] != first[1] || second[0] != second[1]) return std::nullopt;
-  const auto [low, high] = std::minmax(first[0], second[0]);
-  return Walls{low, high};
-}
-
 /// Returns true if a ball of the axis touches the walls of a ball of the solid, or others of the same smooth parts. A
 /// round part has many walls, and cells of the axis lie between several of them.
 bool touch_same_walls(const SolidOracle& solid, const SeenBall& seen, const TouchingBall& own) {
@@ -61,8 +52,7 @@ class CellsBetween {
     const auto [a, b, c] = corners_of(MeshView(cells_), nearest.triangle);
     const Vec3d p = (a + b + c) / 3.0;
     const Vec3d foot = solid_.closest_point(p, seen.body);
-    TouchingBall ball = grown_ball(solid_, seen.body, p, foot, allowed_.noise, allowed_.middle);
-    if (!(ball.radius > 0)) ball = grown_ball(solid_, seen.body, p, foot, allowed_.noise);
+    const TouchingBall ball = grown_ball_from_near(solid_, seen.body, p, foot, allowed_.noise, allowed_.middle);
     return ball.radius > 0 && touch_same_walls(solid_, seen, ball);
   }
 
@@ -74,6 +64,14 @@ class CellsBetween {
 };
 
 }  // namespace
+
+std::optional<std::array<std::uint32_t, 2>> sure_walls(const SolidOracle& solid, const SeenBall& seen) {
+  const Walls first = solid.walls_at(seen.ball.first, seen.body);
+  const Walls second = solid.walls_at(seen.ball.second, seen.body);
+  if (first[0] != first[1] || second[0] != second[1]) return std::nullopt;
+  const auto [low, high] = std::minmax(first[0], second[0]);
+  return Walls{low, high};
+}
 
 std::vector<PairOfWalls> pairs_of_walls(const KnownSolid& solid, const std::vector<SeenBall>& seen,
                                         const TriangleMesh& cells, const TriangleSearch& search,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -20,6 +21,10 @@ struct SeenBall {
   TouchingBall ball;  ///< its radius is 0 if the ball does not count
   std::uint32_t body = 0;
 };
+
+/// Returns the pair of walls that a ball touches, the smaller number first; nullopt if it touches an edge between
+/// walls.
+[[nodiscard]] std::optional<std::array<std::uint32_t, 2>> sure_walls(const SolidOracle& solid, const SeenBall& seen);
 
 /// Two walls, and the balls between them.
 struct PairOfWalls {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
@@ -24,6 +25,12 @@ namespace blum::verifier {
 /// @throws Cancelled.
 [[nodiscard]] Samples samples_of_triangles(const MeshView& mesh, std::span<const std::uint32_t> groups, double step,
                                            const Context& context);
+
+/// Returns the area of a triangle of an axis.
+[[nodiscard]] inline double triangle_area(const MedialView& axis, std::size_t t) {
+  const auto& [a, b, c] = axis.triangles[t];
+  return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
+}
 
 /// Triangles or edges that are sampled in proportion to their sizes.
 class Spread {

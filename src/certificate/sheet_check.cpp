@@ -21,6 +21,7 @@
 #include "certificate/angle.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/drawn_balls.hpp"
+#include "certificate/missed_pairs.hpp"
 #include "certificate/sampling.hpp"
 #include "certificate/solid_oracle.hpp"
 #include "certificate/stated_sites.hpp"
@@ -36,11 +37,6 @@ constexpr std::size_t few_triangles = 8;  ///< smaller parts belong to the sheet
 constexpr std::size_t samples_of_part = 24;
 constexpr double nearly_all = 0.75;  ///< share of the samples of a part that lie between one pair of walls
 constexpr double least_turn = 50;    ///< degrees: least angle between parts of different sheets
-
-double area(const MedialView& axis, std::size_t t) {
-  const auto& [a, b, c] = axis.triangles[t];
-  return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
-}
 
 /// Returns the vector from an edge to the third vertex of a triangle, at a right angle to the edge.
 Vec3d leaf(const MedialView& axis, const std::array<std::uint32_t, 2>& edge, std::uint32_t triangle) {
@@ -82,7 +78,7 @@ std::vector<SheetPart> large_parts(const MedialView& axis, const Incidence& inci
   for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
     SheetPart& part = parts[{axis.sheet[t], joined.find(t)}];
     part.sheet = axis.sheet[t];
-    part.triangles.add(area(axis, t), t);
+    part.triangles.add(triangle_area(axis, t), t);
   }
   std::vector<SheetPart> out;
   for (auto at = parts.begin(); at != parts.end();) {
@@ -122,14 +118,11 @@ PartBetween walls_of(const MedialView& axis, const SheetPart& part, const SolidO
     const Vec3d p = random_point({axis.positions[a], axis.positions[b], axis.positions[c]}, random);
     const std::uint32_t body = body_of[a];
     const Vec3d foot = solid.closest_point(p, body);
-    TouchingBall ball = grown_ball(solid, body, p, foot, allowed.noise, allowed.middle);
-    if (!(ball.radius > 0)) ball = grown_ball(solid, body, p, foot, allowed.noise);
+    const TouchingBall ball = grown_ball_from_near(solid, body, p, foot, allowed.noise, allowed.middle);
     if (!(ball.radius > 0) || distance_to_middle(p, ball) > allowed.middle) continue;
-    const auto first = solid.walls_at(ball.first, body);
-    const auto second = solid.walls_at(ball.second, body);
-    if (first[0] != first[1] || second[0] != second[1]) continue;
-    const auto [low, high] = std::minmax(first[0], second[0]);
-    Votes& votes = all[{low, high}];
+    const auto walls = sure_walls(solid, {ball, body});
+    if (!walls) continue;
+    Votes& votes = all[*walls];
     ++votes.count;
     votes.ball = ball;
     const Vec3d across = (ball.first - ball.second) / length(ball.first - ball.second);

@@ -364,6 +364,7 @@ class ShellOracle : public SolidOracle {
     if (shells_.outwards[triangle] == 0 || !(size * distance > rounding * cubed)) return std::nullopt;
     return shells_.outwards[triangle] * dot(p - a, normal) / size;
   }
+
   /// Returns true if the triangles within a distance of a point are joined to the given one by edges among them. At a
   /// narrow gap they are not.
   [[nodiscard]] bool has_one_wall(const Vec3d& p, std::uint32_t triangle, double within, std::uint32_t body) const {
@@ -376,12 +377,13 @@ class ShellOracle : public SolidOracle {
       const std::uint32_t t = line.back();
       line.pop_back();
       for (std::size_t k = 0; k < 3; ++k) {
-        if (left.erase(shells_.beside[3 * std::size_t{t} + k]) > 0)
-          line.push_back(shells_.beside[3 * std::size_t{t} + k]);
+        const std::uint32_t beside = shells_.beside[3 * std::size_t{t} + k];
+        if (left.erase(beside) > 0) line.push_back(beside);
       }
     }
     return left.empty();
   }
+
   [[nodiscard]] bool are_beside(std::uint32_t triangle, std::uint32_t other) const {
     const auto first = shells_.beside.begin() + 3 * static_cast<std::ptrdiff_t>(triangle);
     return std::find(first, first + 3, other) != first + 3;
