@@ -1,5 +1,7 @@
 """Proves that `blum match` reports the sheets that two axes share, and those that only one has."""
 
+import json
+
 import numpy as np
 import pytest
 from tool import BLUM, run, run_json
@@ -43,8 +45,6 @@ def test_files_have_the_patches_of_each_triangle(box):
 def test_graphs_of_patches_have_their_sides(box, tmp_path):
     arguments = ["medial", box / "box.ply", "-o", tmp_path / "a.vtp", "--resolution", 24, "--theta", 60]
     found = run_json(*arguments, "--patch-angle", 30, "--patch-fit", 1e-6, "--graph", tmp_path / "g.json")
-    import json
-
     graph = json.loads((tmp_path / "g.json").read_text())
     assert found["solids"][0]["axes"][0]["graph"]["sheets"] == len(graph["sheets"])
     assert all(len(sheet["sides"]) == 2 for sheet in graph["sheets"])

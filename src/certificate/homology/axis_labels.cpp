@@ -77,15 +77,18 @@ bool lead_between(const SolidOracle& solid, std::uint32_t body, const Curtains& 
          lead_between(solid, body, curtains, step, *middle, b, moves_left, way);
 }
 
-/// Returns 30 unit vectors in directions of all kinds.
-std::vector<Vec3d> all_directions() {
-  std::vector<Vec3d> out;
-  for (std::uint32_t k = 0; k < 12; ++k) {
-    const ProbeLine line = line_through({}, k);
-    out.insert(out.end(), {line.along, -line.along});
-  }
-  for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) out.insert(out.end(), {axis, -axis});
-  return out;
+/// Returns 30 unit vectors in directions of all kinds, the same list in each call.
+const std::vector<Vec3d>& all_directions() {
+  static const std::vector<Vec3d> directions = [] {
+    std::vector<Vec3d> out;
+    for (std::uint32_t k = 0; k < 12; ++k) {
+      const ProbeLine line = line_through({}, k);
+      out.insert(out.end(), {line.along, -line.along});
+    }
+    for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) out.insert(out.end(), {axis, -axis});
+    return out;
+  }();
+  return directions;
 }
 
 /// Adds a point to a way that ends close to a point of the surface. From there, the way leads to `to` inside the body,
@@ -117,8 +120,7 @@ void lead_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& surf
 /// step. If there is none, it is the deepest point tried; nullopt if no point is inside.
 /// @param step  the shortest step to try; the longest is 16 times as long.
 std::optional<Vec3d> moved_inside(const SolidOracle& solid, std::uint32_t body, const Vec3d& point, double step) {
-  const std::vector<Vec3d> directions = all_directions();
-  return best_step(solid, body, point, step, directions, [](const Vec3d&) { return true; });
+  return best_step(solid, body, point, step, all_directions(), [](const Vec3d&) { return true; });
 }
 
 /// Adds points to a way that touches segments of paths, so that it passes them inside the body. Points of the way that
