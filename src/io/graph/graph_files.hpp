@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -32,6 +33,11 @@ struct ListOf<std::vector<T>> : std::true_type {};
 template <class T, std::size_t count>
 struct ListOf<std::array<T, count>> : std::true_type {};
 
+template <class T>
+struct OptionalOf : std::false_type {};
+template <class T>
+struct OptionalOf<std::optional<T>> : std::true_type {};
+
 /// Converts a value to JSON. Described structs become objects whose keys are the names of their members.
 template <class T>
 Json json_of(const T& value) {
@@ -47,7 +53,7 @@ Json json_of(const T& value) {
     Json json = Json::array();
     for (const auto& part : value) json.push_back(json_of(part));
     return json;
-  } else if constexpr (requires { value.has_value(); }) {
+  } else if constexpr (OptionalOf<T>::value) {
     return value ? json_of(*value) : Json(nullptr);
   } else {
     static_assert(std::is_arithmetic_v<T> || std::same_as<T, std::string>);
@@ -72,10 +78,10 @@ void add_members(const T& whole, Attributes& out, const std::string& prefix = {}
     const std::string name = prefix + std::string(member.name);
     if constexpr (DescribedStruct<Value>) {
       add_members(value, out, name + "_");
-    } else if constexpr (requires {
-                           requires DescribedStruct<typename Value::value_type> && requires { value.has_value(); };
-                         }) {
-      if (value) add_members(*value, out, name + "_");
+    } else if constexpr (OptionalOf<Value>::value) {
+      if constexpr (DescribedStruct<typename Value::value_type>) {
+        if (value) add_members(*value, out, name + "_");
+      }
     } else if constexpr (DescribedEnum<Value>) {
       out.emplace_back(name, std::string(to_string(value)));
     } else if constexpr (std::same_as<Value, Vec3d>) {
