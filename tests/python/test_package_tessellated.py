@@ -33,15 +33,24 @@ def revolved(profile, sides):
     return np.array(vertices), np.array(triangles)
 
 
-def shaft():
-    """Steps and grooves, turned: 1,600 triangles."""
+def shaft(sides=25, radii=(10.0, 12.0, 15.0, 12.5, 11.0)):
+    """Steps and grooves, turned: 1,600 triangles by default."""
     profile, height = [(0.0, 0.0), (9.0, 0.0), (10.0, 1.0)], 1.0
-    for radius in (10.0, 12.0, 15.0, 12.5, 11.0):
+    for radius in radii:
         if profile[-1][0] != radius:
             profile.append((radius, height))
         profile += [(radius + r, height + z) for r, z in ((0, 6), (-1.5, 6), (-1.5, 8), (0, 8), (0, 15))]
         height += 15
-    return revolved([*profile, (10.0, height + 1), (0.0, height + 1)], 25)
+    return revolved([*profile, (radii[-1] - 1, height + 1), (0.0, height + 1)], sides)
+
+
+def fine_shaft():
+    """Facets of 9 degrees: rounding parts junctions below reflex vertices, and makes walls of almost no width."""
+    return shaft(40, (10.0, 12.0))
+
+
+def finest_shaft():
+    return shaft(50, (10.0, 12.0))
 
 
 def extruded(loops, height):
@@ -71,8 +80,9 @@ def wheel():
     return extruded([circle(120, 50.0), *holes, circle(60, 15.0)[::-1]], 5.0)
 
 
-@pytest.mark.parametrize("part", [shaft, wheel])
-def test_parts_are_traced_and_open_places_are_named(part):
+@pytest.mark.parametrize(("part", "share"), [(shaft, 0.5), (fine_shaft, 0.5), (finest_shaft, 0.25), (wheel, 0.5)])
+def test_parts_are_traced_and_open_places_are_named(part, share):
+    """At least this share of the seams is proven. All other places are named."""
     vertices, triangles = part()
     mesh = blum.Mesh(vertices.astype(np.float32), triangles)
     with warnings.catch_warnings():
@@ -83,4 +93,4 @@ def test_parts_are_traced_and_open_places_are_named(part):
     open_places = report.junctions - report.proven_junctions + report.seams - report.proven_seams
     assert len(report.open) == open_places
     assert report.proven == (open_places == 0)
-    assert report.proven_seams > 0.5 * report.seams
+    assert report.proven_seams > share * report.seams

@@ -59,12 +59,13 @@ double value(const Chebyshev& c, double share) {
 class Gap {
  public:
   Gap(const TracedSites& sites, const CurveSamples& samples, const std::array<double, count>& radii,
-      TracedSites::Index site)
+      std::span<const TracedSites::Index> own, TracedSites::Index site)
       : sites_(sites), samples_(samples), site_(site) {
+    const auto plane = plane_to(own);
     for (std::size_t k = 0; k < count; ++k) {
       const double distance = sites.distance(site, samples.points[k]);
       furthest_ = std::max(furthest_, distance);
-      values_[k] = distance - radii[k];
+      values_[k] = plane ? plane->height(samples.points[k]) : distance - radii[k];
     }
     gap_ = interpolant(values_);
   }
@@ -94,6 +95,14 @@ class Gap {
   }
 
  private:
+  /// Returns the plane before the region of an edge, if an own edge meets it at a vertex. Distances of both differ by
+  /// less than rounding near it.
+  [[nodiscard]] std::optional<TracedSites::EdgePlane> plane_to(std::span<const TracedSites::Index> own) const {
+    for (const TracedSites::Index i : own) {
+      if (const auto plane = sites_.plane_between_edges(i, site_)) return plane;
+    }
+    return std::nullopt;
+  }
   static double share_of(std::size_t k) { return 0.5 * (1 - std::cos(angle_of(k, places))); }
   [[nodiscard]] double limit() const { return 4 * sites_.tolerance(); }
 
@@ -146,7 +155,7 @@ std::optional<ClearWay> clear_way(const TracedSites& sites, const CurveSamples& 
   }
   ClearWay out{samples.length, {}};
   for (const TracedSites::Index i : others) {
-    const Gap gap(sites, samples, radii, i);
+    const Gap gap(sites, samples, radii, own, i);
     if (gap.is_far()) continue;
     if (!gap.is_precise()) return std::nullopt;
     const double way = gap.clear_share() * samples.length;

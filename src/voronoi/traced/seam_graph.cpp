@@ -147,7 +147,7 @@ SeamGraph::Traced SeamGraph::trace_walk(const Walk& walk) const {
   const TracedCurve curve{{tracer_.between(a, b, ahead), TracedSurface::plane(walk.normal, walk.start)},
                           {std::min(a, b), std::max(a, b)}};
   TraceWork work = work_of_trace();
-  Traced out{SeamTracer(sites_, work).trace(curve, walk.start, walk.towards, {}), {}, 0};
+  Traced out{SeamTracer(sites_, work).trace(curve, walk.start, walk.towards, {walk.start, {}}), {}, 0};
   out.work = work.done;
   return out;
 }
@@ -284,7 +284,7 @@ SeamGraph::Traced SeamGraph::trace_seam(const Vec3d& at, const LeavingSeam& seam
                                         const std::vector<Index>& left) const {
   TraceWork work = work_of_trace();
   const SeamTracer tracer(sites_, work);
-  Traced out{tracer.trace(seam.curve, seam.start, seam.ray.direction, left), {}, 0};
+  Traced out{tracer.trace(seam.curve, seam.start, seam.ray.direction, {at, left}), {}, 0};
   if (seam.start != at) out.trace.points.insert(out.trace.points.begin(), at);
   // Many seams may arrive at a junction of many sites at once.
   if (out.trace.end == TraceEnd::event && out.trace.sites.size() <= many_sites &&

@@ -71,7 +71,7 @@ std::vector<LeavingSeam> leaving_seams(const TracedSites& sites, const SeamTrace
     double step = std::clamp(8 * std::sqrt(sites.tolerance() * radius), 0.02 * radius, 0.25 * radius);
     // Seams between junctions that are very close are short.
     constexpr int least_tries = 8;
-    for (int k = 0; k < least_tries || step > 64 * sites.tolerance(); ++k, step *= 0.25) {
+    for (int k = 0; k < least_tries || step > 8 * sites.tolerance(); ++k, step *= 0.25) {
       std::vector<LeavingSeam> seams = seams_in_plane(sites, tracer, at, ray, step);
       if (seams.empty()) continue;
       std::move(seams.begin(), seams.end(), std::back_inserter(out));

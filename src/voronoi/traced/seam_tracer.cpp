@@ -18,6 +18,13 @@ bool contains(const std::vector<Index>& sorted, Index i) {
   return std::binary_search(sorted.begin(), sorted.end(), i);
 }
 
+/// Returns the first positive root of a + b s - bend/2 s^2, for a >= 0.
+double first_root(double a, double b, double bend) {
+  const double size = std::sqrt(b * b + 2 * bend * a);
+  if (b < 0) return 2 * a / (size - b);
+  return bend > 0 ? (b + size) / bend : std::numeric_limits<double>::infinity();
+}
+
 /// Largest steps, relative to the radius. Along lines, contacts are known exactly.
 constexpr double longest_step = 0.5;
 constexpr double longest_step_of_line = 1;
@@ -45,6 +52,16 @@ bool SeamTracer::is_straight(const TracedCurve& curve) const {
     const SiteKind first = sites_[surface.first].kind;
     return first == sites_[surface.second].kind && first != SiteKind::edge;
   });
+}
+
+std::optional<Vec3d> SeamTracer::plane_of(const TracedCurve& curve) const {
+  for (const TracedSurface& surface : curve.surfaces) {
+    if (surface.is_plane()) return surface.normal;
+    const TracedSite& first = sites_[surface.first];
+    const TracedSite& second = sites_[surface.second];
+    if (first.kind == SiteKind::face && second.kind == SiteKind::face) return unit(first.direction - second.direction);
+  }
+  return std::nullopt;
 }
 
 double SeamTracer::value(const TracedSurface& surface, const Vec3d& x) const {
@@ -256,6 +273,16 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve
                                                         double radius, double most) const {
   std::vector<Room> out;
   const SeamLine line{curve.sites[0], x, along};
+  const auto way_past_edges = [&](Index i) {
+    double out = 0;
+    for (const Index own : curve.sites) {
+      const auto plane = sites_.plane_between_edges(own, i);
+      if (!plane) continue;
+      const double height = plane->height(x), rate = -dot(plane->normal, along);
+      if (height > 0) out = std::max(out, rate > 0 ? std::min(height / rate, most) : most);
+    }
+    return out;
+  };
   // The radius is convex along the line. So all balls around its points lie in the ball around its middle.
   const Vec3d middle = x + along * (0.5 * most);
   const double largest = std::max(radius, sites_.distance(line.own, x + along * most));
@@ -266,7 +293,7 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve
     if (contact >= most) return;
     const double beyond = sites_.outside(i, x, most);
     if (beyond >= most) return;
-    const double step = std::max({contact, gap_to(i, x, beyond, radius) / 2, beyond});
+    const double step = std::max({contact, gap_to(i, x, beyond, radius) / 2, beyond, way_past_edges(i)});
     if (step < most) out.push_back({step, i});
   });
   return out;
@@ -278,8 +305,16 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve
   const double reach = radius + 2 * most;
   // Second derivatives of distances along the curve are a few times its curvature.
   const double bend = 8 / std::max(radius, sites_.tolerance());
-  // Returns the first positive root of a + b s - bend/2 s^2.
-  const auto root = [&](double a, double b) { return (b + std::sqrt(b * b + 2 * bend * a)) / bend; };
+  const std::optional<Vec3d> plane = plane_of(curve);
+  const auto face = std::find_if(curve.sites.begin(), curve.sites.end(),
+                                 [&](Index own) { return sites_[own].kind == SiteKind::face; });
+  // Returns the way before which a linear function stays above 0. A curve in a plane bends within it, so functions
+  // whose slope is at right angles to the plane change evenly. Differences of nearly symmetric sites are such
+  // functions.
+  const auto way_to_zero = [&](double value, const Vec3d& slope) {
+    const Vec3d within = plane ? slope - *plane * dot(*plane, slope) : slope;
+    return first_root(value, dot(slope, along), bend * length(within));
+  };
   const double own_rate = dot(sites_.gradient(curve.sites[0], x), along);
   sites_.for_each_within(x, reach, [&](Index i) {
     ++work_.done;
@@ -292,17 +327,28 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve
     if (beyond > 0 && (site.kind != SiteKind::face || site.is_convex)) {
       for (const DomainSide& side : site.sides) {
         const double height = -side.height(x);
-        if (height > 0) step = std::max(step, std::min(root(height, -dot(side.normal, along)), most));
+        if (height > 0) step = std::max(step, std::min(way_to_zero(height, -side.normal), most));
       }
     }
     if (beyond > 0 && site.kind == SiteKind::face && !site.is_convex && !site.index) {
       const TracedSites::OutsideSide outside = sites_.outside_side(i, x);
       const double height = std::max(-outside.side->height(x), 0.0);
-      step = std::max(step, std::min({root(height, -dot(outside.side->normal, along)), outside.others, most}));
+      step = std::max(step, std::min({way_to_zero(height, -outside.side->normal), outside.others, most}));
     }
     // The line or plane of a site is not farther than the site.
     const double gap = sites_.distance(i, x) - radius;
-    if (gap > 0) step = std::max(step, std::min(root(gap, dot(sites_.gradient(i, x), along) - own_rate), most));
+    if (gap > 0) {
+      const double way = face != curve.sites.end() && site.kind == SiteKind::face
+                             ? way_to_zero(gap, site.direction - sites_[*face].direction)
+                             : first_root(gap, dot(sites_.gradient(i, x), along) - own_rate, bend);
+      step = std::max(step, std::min(way, most));
+    }
+    for (const Index own : curve.sites) {
+      const auto between = sites_.plane_between_edges(own, i);
+      if (!between) continue;
+      const double height = between->height(x);
+      if (height > 0) step = std::max(step, std::min(way_to_zero(height, between->normal), most));
+    }
     if (step < most) out.push_back({std::max(step, 0.0), i});
   });
   return out;
@@ -317,15 +363,33 @@ bool SeamTracer::may_meet(const TracedCurve& curve, Index site, const Vec3d& at)
   return is_at(site) && std::all_of(curve.sites.begin(), curve.sites.end(), is_at);
 }
 
+bool SeamTracer::is_closer_to_an_edge(const DomainSide& end, const std::vector<Index>& edges, const Vec3d& at) const {
+  const double rounding = 1e-15 * sites_.extent();
+  return std::any_of(edges.begin(), edges.end(), [&](Index i) {
+    const TracedSite& edge = sites_[i];
+    return std::any_of(edge.sides.begin() + 2, edge.sides.end(),
+                       [&](const DomainSide& side) {
+                         return &side != &end && side.ends[0] == end.ends[0] && side.height(at) > rounding;
+                       }) &&
+           sites_.outside(i, at, sites_.tolerance()) <= sites_.tolerance();
+  });
+}
+
 std::optional<SeamTracer::Event> SeamTracer::event_with(const TracedCurve& curve, Index site, const Vec3d& x,
                                                         const Vec3d& along, double radius) const {
   std::optional<Event> best;
   double least = std::numeric_limits<double>::infinity();
-  const auto consider = [&](const TracedSurface& surface, double most) {
+  std::vector<Index> edges;
+  for (const Index own : curve.sites) {
+    if (sites_[own].kind == SiteKind::edge) edges.push_back(own);
+  }
+  if (sites_[site].kind == SiteKind::edge) edges.push_back(site);
+  const auto consider = [&](const TracedSurface& surface, double most, const DomainSide* end_of_edge = nullptr) {
     const auto found = solve({curve.surfaces[0], curve.surfaces[1], surface}, x, radius);
     if (!found) return;
     const double way = dot(*found - x, along);
     if (way <= 0 || way >= std::min(least, most) || way < 0.5 * length(*found - x)) return;
+    if (end_of_edge != nullptr && is_closer_to_an_edge(*end_of_edge, edges, *found)) return;
     if (!may_meet(curve, site, *found)) return;
     TracedSites::Closest there = closest(*found, sites_.tolerance(), curve.sites[0]);
     if (!contains(there.sites, site)) return;
@@ -334,16 +398,20 @@ std::optional<SeamTracer::Event> SeamTracer::event_with(const TracedCurve& curve
     best = {*found, std::move(there)};
   };
   const double infinite = least;
-  sites_.for_each_side(site, x, 2 * radius, [&](const DomainSide& side) {
-    if (side.is_open) consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
-  });
+  const auto consider_side = [&](Index owner, const DomainSide& side) {
+    if (!side.is_open) return;
+    const bool is_end = sites_[owner].kind == SiteKind::edge && &side - sites_[owner].sides.data() >= 2;
+    consider(TracedSurface::plane(side.normal, side.ends[0]), infinite, is_end ? &side : nullptr);
+  };
+  sites_.for_each_side(site, x, 2 * radius, [&](const DomainSide& side) { consider_side(site, side); });
   for (const Index own : curve.sites) {
     // The curve passes a side within the way.
     sites_.for_each_side(own, x, 2 * radius, [&](const DomainSide& side) {
-      if (side.is_open && std::abs(side.height(x)) < radius) {
-        consider(TracedSurface::plane(side.normal, side.ends[0]), infinite);
-      }
+      if (std::abs(side.height(x)) < radius) consider_side(own, side);
     });
+    if (const auto plane = sites_.plane_between_edges(own, site)) {
+      consider(TracedSurface::plane(plane->normal, plane->point), infinite);
+    }
   }
   // At a side of its domain, the distance of a site touches that of its neighbour, and the side gives the place more
   // precisely.
@@ -508,7 +576,7 @@ struct SeamTracer::Run {
   const SeamTracer& tracer;
   const TracedCurve& curve;
   const Vec3d start;
-  const std::vector<Index>& left;  ///< closest sites of the start
+  const Departure& from;
   Trace out;
   Vec3d x;
   Vec3d along;
@@ -518,6 +586,12 @@ struct SeamTracer::Run {
   std::optional<Index> expected = std::nullopt;  ///< probably the next site that becomes as close
 
   [[nodiscard]] double tolerance() const { return tracer.sites_.tolerance(); }
+
+  /// Returns true if more sites than those of the curve are closest.
+  [[nodiscard]] bool is_event(const std::vector<Index>& found) const {
+    return found.size() > curve.sites.size() &&
+           std::includes(found.begin(), found.end(), curve.sites.begin(), curve.sites.end());
+  }
 
   /// Returns true if all sites meet at one edge of the polyhedron: its faces, and the edge itself if it is reflex. They
   /// are equally close only there, but differ by less than the tolerance near an edge that is nearly flat.
@@ -588,7 +662,7 @@ struct SeamTracer::Run {
     for (const std::optional<Vec3d>& place : {met, touched}) {
       if (!place) continue;
       std::vector<Index> there = tracer.closest(*place, tolerance(), curve.sites[0]).sites;
-      if (!std::includes(there.begin(), there.end(), curve.sites.begin(), curve.sites.end())) continue;
+      if (!is_event(there)) continue;
       out.points.back() = *place;
       return there;
     }
@@ -610,8 +684,9 @@ struct SeamTracer::Run {
       if (!event) continue;
       const auto& [found, there] = *event;
       const double size = length(found - x);
-      if (length(found - start) <= tracer.sites_.precision().apart || size > 2 * most) continue;
-      if (there.sites == left && length(found - start) <= tracer.sites_.blur(there.radius)) continue;
+      const double away = length(found - from.at);
+      if (away <= tracer.sites_.precision().apart || size > 2 * most) continue;
+      if (there.sites == from.sites && away <= tracer.sites_.blur(there.radius)) continue;
       const bool is_first = std::all_of(near.begin(), near.end(), [&](const Room& room) {
         return room.step >= size || contains(there.sites, room.site);
       });
@@ -634,14 +709,15 @@ struct SeamTracer::Run {
         out.points.back() = x;
       }
       const TracedSites::Closest there = tracer.closest(x, 4 * tolerance(), curve.sites[0]);
-      if (there.sites != left || length(x - start) > tracer.sites_.blur(radius)) {
+      const bool is_start = there.sites == from.sites && length(x - from.at) <= tracer.sites_.blur(radius);
+      if (!is_start && there.sites != curve.sites) {
         end_at(there.sites, there.radius);
         return std::nullopt;
       }
       step = 0.1 * tracer.sites_.blur(radius);
       // Only the sites of the start are still as close. Others limit the step as always.
       const auto other =
-          std::find_if(near.begin(), near.end(), [&](const Room& room) { return !contains(left, room.site); });
+          std::find_if(near.begin(), near.end(), [&](const Room& room) { return !contains(from.sites, room.site); });
       if (other != near.end()) step = std::min(step, other->step);
     }
     return std::max(step, 4 * tolerance());
@@ -733,8 +809,8 @@ double SeamTracer::first_step(const TracedCurve& curve) const {
 }
 
 Trace SeamTracer::trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
-                        const std::vector<Index>& left) const {
-  Run run{*this, curve, start, left, {}, start, tangent(curve, start)};
+                        const Departure& from) const {
+  Run run{*this, curve, start, from, {}, start, tangent(curve, start)};
   run.out.points.push_back(start);
   if (dot(run.along, towards) < 0) run.along = -run.along;
   if (length(run.along) == 0) return std::move(run.out);

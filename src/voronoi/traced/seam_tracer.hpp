@@ -51,6 +51,14 @@ struct Trace {
   std::vector<TracedSites::Index> sites;  ///< if it ended at an event: all closest sites there
 };
 
+/// Where a trace leaves a junction. The start of the trace may lie a little further.
+struct Departure {
+  Vec3d at;
+  /// The closest sites there. Where curves touch, the place is not precise, so these sites may be equally close a
+  /// little further on.
+  std::vector<TracedSites::Index> sites;
+};
+
 /// Follows curves from point to point. A step is as long as the distances of other sites allow: along the curve, no
 /// distance changes faster than the way.
 class SeamTracer {
@@ -60,10 +68,9 @@ class SeamTracer {
 
   /// @param start   a point of the curve.
   /// @param towards direction at the start; need not be a tangent.
-  /// @param left    the closest sites of the start. Where curves touch, the start is not precise, so these sites may be
-  ///                equally close a little further on.
+  /// @param from    the junction that the curve leaves; otherwise the start.
   [[nodiscard]] Trace trace(const TracedCurve& curve, const Vec3d& start, const Vec3d& towards,
-                            const std::vector<TracedSites::Index>& left) const;
+                            const Departure& from) const;
   /// Returns the point of a curve in a plane, near a first guess.
   [[nodiscard]] std::optional<Vec3d> point_in_plane(const TracedCurve& curve, const Vec3d& guess,
                                                     const Vec3d& normal) const;
@@ -107,6 +114,10 @@ class SeamTracer {
   [[nodiscard]] std::optional<Vec3d> solve(const std::array<TracedSurface, 3>& surfaces, Vec3d x, double reach) const;
   /// Returns true if a site and the sites of a curve have one distance from a point, which lies in their domains.
   [[nodiscard]] bool may_meet(const TracedCurve& curve, TracedSites::Index site, const Vec3d& at) const;
+  /// Returns true if a point in the end of an edge's domain is closer to another edge from the same vertex. The
+  /// distances differ by the square of the way, which may be below the tolerance.
+  [[nodiscard]] bool is_closer_to_an_edge(const DomainSide& end, const std::vector<TracedSites::Index>& edges,
+                                          const Vec3d& at) const;
   [[nodiscard]] std::optional<Event> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                                 const Vec3d& along, double radius) const;
   /// Returns the length of a first step: the size of the curve's smallest site.
@@ -130,6 +141,8 @@ class SeamTracer {
                                                           double radius, const std::vector<Room>& near) const;
   /// Returns true if both surfaces of a curve are planes.
   [[nodiscard]] bool is_straight(const TracedCurve& curve) const;
+  /// Returns the normal of a plane that contains a curve, if there is one.
+  [[nodiscard]] std::optional<Vec3d> plane_of(const TracedCurve& curve) const;
   [[nodiscard]] double value(const TracedSurface& surface, const Vec3d& x) const;
   [[nodiscard]] Vec3d slope(const TracedSurface& surface, const Vec3d& x) const;
 

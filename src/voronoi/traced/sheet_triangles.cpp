@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "blum/geometry/ear_clipping.hpp"
@@ -42,6 +44,33 @@ class Refinement {
     }
   }
 
+  /// Flips inner edges until they satisfy the Delaunay condition in the plane.
+  void flip_all() {
+    constexpr int most_passes = 30;
+    for (int pass = 0; pass < most_passes; ++pass) {
+      bool is_any = false;
+      std::vector<bool> is_changed(out_.triangles.size(), false);
+      const Sides all = sides();
+      for (const auto& [ends, at] : all) {
+        if (at[1] == none || is_changed[at[0]] || is_changed[at[1]]) continue;
+        auto [a, b] = ends;
+        const std::uint32_t c = apex(at[0], a, b), d = apex(at[1], a, b);
+        const auto& p = out_.plane;
+        if (!runs_along(at[0], a, b)) std::swap(a, b);
+        if (c == d || all.contains(key(c, d))) continue;
+        // The flipped triangles c-d must both be counterclockwise.
+        const double least = 1e-12 * (std::abs(cross_of(p[a], p[b], p[c])) + std::abs(cross_of(p[a], p[b], p[d])));
+        if (cross_of(p[c], p[a], p[d]) <= least || cross_of(p[d], p[b], p[c]) <= least) continue;
+        if (!is_in_circle(p[a], p[b], p[c], p[d])) continue;
+        out_.triangles[at[0]] = {c, a, d};
+        out_.triangles[at[1]] = {d, b, c};
+        is_changed[at[0]] = is_changed[at[1]] = true;
+        is_any = true;
+      }
+      if (!is_any) return;
+    }
+  }
+
  private:
   /// Sides of triangles by their ends, the smaller one first: up to two triangles.
   using Sides = std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::uint32_t, 2>>;
@@ -76,33 +105,6 @@ class Refinement {
       if (corners[k] == a) return corners[(k + 1) % 3] == b;
     }
     return false;
-  }
-
-  /// Flips inner edges until they satisfy the Delaunay condition in the plane.
-  void flip_all() {
-    constexpr int most_passes = 30;
-    for (int pass = 0; pass < most_passes; ++pass) {
-      bool is_any = false;
-      std::vector<bool> is_changed(out_.triangles.size(), false);
-      const Sides all = sides();
-      for (const auto& [ends, at] : all) {
-        if (at[1] == none || is_changed[at[0]] || is_changed[at[1]]) continue;
-        auto [a, b] = ends;
-        const std::uint32_t c = apex(at[0], a, b), d = apex(at[1], a, b);
-        const auto& p = out_.plane;
-        if (!runs_along(at[0], a, b)) std::swap(a, b);
-        if (c == d || all.contains(key(c, d))) continue;
-        // The flipped triangles c-d must both be counterclockwise.
-        const double least = 1e-12 * (std::abs(cross_of(p[a], p[b], p[c])) + std::abs(cross_of(p[a], p[b], p[d])));
-        if (cross_of(p[c], p[a], p[d]) <= least || cross_of(p[d], p[b], p[c]) <= least) continue;
-        if (!is_in_circle(p[a], p[b], p[c], p[d])) continue;
-        out_.triangles[at[0]] = {c, a, d};
-        out_.triangles[at[1]] = {d, b, c};
-        is_changed[at[0]] = is_changed[at[1]] = true;
-        is_any = true;
-      }
-      if (!is_any) return;
-    }
   }
 
   [[nodiscard]] Point middle(std::uint32_t a, std::uint32_t b) const {
@@ -217,6 +219,46 @@ std::optional<SheetTriangles> sheet_triangles(const WallMap& map, const std::vec
   for (const Triangle& t : *triangles) out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
   Refinement(map, out, chord, longest, context).run();
   return is_one_to_one(out) ? std::optional(std::move(out)) : std::nullopt;
+}
+
+std::optional<SheetTriangles> narrow_sheet_triangles(const WallMap& map, const std::vector<Vec3d>& loop, double chord,
+                                                     const Context& context) {
+  const std::size_t count = loop.size();
+  std::vector<Point> plane;
+  std::vector<double> way{0};  // along the loop, to each point and back to the first one
+  for (std::size_t k = 0; k < count; ++k) {
+    plane.push_back(map.to_plane(loop[k]));
+    way.push_back(way.back() + length(loop[(k + 1) % count] - loop[k]));
+  }
+  if (std::abs(detail::doubled_area(plane)) > way.back() * chord) return std::nullopt;
+  // The ends are far apart, and divide the loop into two sides.
+  const auto furthest_from = [&](std::size_t from) {
+    const auto closer = [&](const Vec3d& a, const Vec3d& b) {
+      return squared_length(a - loop[from]) < squared_length(b - loop[from]);
+    };
+    return static_cast<std::size_t>(std::max_element(loop.begin(), loop.end(), closer) - loop.begin());
+  };
+  std::size_t last = furthest_from(0);
+  std::size_t first = furthest_from(last);
+  if (first > last) std::swap(first, last);
+  if (first == last) return std::nullopt;
+  // Both sides bend outwards, counterclockwise, so that the polygon is convex.
+  SheetTriangles out{loop, {}, {}};
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool is_lower = k >= first && k <= last;
+    const double to_first = way[k] >= way[first] ? way[k] - way[first] : way[k] - way[first] + way.back();
+    const double lower = way[last] - way[first];
+    const double share = is_lower ? to_first / lower : 1 - (to_first - lower) / (way.back() - lower);
+    out.plane.push_back({share, (is_lower ? -1 : 1) * share * (1 - share)});
+  }
+  detail::PlanePolygon polygon;
+  std::ignore = polygon.add_loop(out.plane);
+  auto triangles = detail::triangulate(polygon, detail::EarOrder::in_turn, context);
+  if (!triangles) return std::nullopt;
+  out.triangles = std::move(*triangles);
+  const double infinite = std::numeric_limits<double>::infinity();
+  Refinement(map, out, infinite, infinite, context).flip_all();
+  return out;
 }
 
 }  // namespace blum::voronoi

@@ -33,4 +33,12 @@ struct SheetTriangles {
                                                             const std::vector<std::vector<Vec3d>>& loops, double chord,
                                                             double longest, const Context& context);
 
+/// Triangulates a sheet that is narrower than the chords of its boundary, so that these may cross in the plane.
+/// Connects points on opposite sides at equal shares of their lengths. The points in `plane` are not those of the map.
+/// @param loop  points of the boundary.
+/// @param chord  mesh units.
+/// @return nothing if the sheet is wider: its area is larger than half of its boundary's length times `chord`.
+[[nodiscard]] std::optional<SheetTriangles> narrow_sheet_triangles(const WallMap& map, const std::vector<Vec3d>& loop,
+                                                                   double chord, const Context& context);
+
 }  // namespace blum::voronoi

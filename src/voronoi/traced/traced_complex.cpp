@@ -410,24 +410,15 @@ class Assembly {
       if (list.size() < 3) return false;
     }
     const WallMap map(sites_, sheet.first, sheet.second, normal_of(sheet), loops[0]);
-    const auto made = sheet_triangles(map, loops, chord_, longest_, context_);
+    std::optional<SheetTriangles> made = sheet_triangles(map, loops, chord_, longest_, context_);
+    if (!made && loops.size() == 1) made = narrow_sheet_triangles(map, loops[0], chord_, context_);
     if (!made) return false;
     std::vector<Index> pair{std::min(sheet.first, sheet.second), std::max(sheet.first, sheet.second)};
     for (std::size_t k = number.size(); k < made->points.size(); ++k) {
       number.push_back(static_cast<std::uint32_t>(vertices_.size()));
       vertices_.push_back({made->points[k], pair, none, false});
     }
-    // Triangles have one orientation in the plane. The largest one shows which side faces the second site.
-    double largest = -1;
-    bool is_turned = false;
-    for (const Triangle& t : made->triangles) {
-      const Vec3d& a = made->points[t[0]];
-      const Vec3d normal = cross(made->points[t[1]] - a, made->points[t[2]] - a);
-      if (squared_length(normal) <= largest) continue;
-      largest = squared_length(normal);
-      const Vec3d middle = (a + made->points[t[1]] + made->points[t[2]]) / 3.0;
-      is_turned = dot(normal, towards_second(sheet, middle)) < 0;
-    }
+    const bool is_turned = is_along_boundary(made->triangles) != loop_faces_second(sheet);
     for (Triangle t : made->triangles) {
       if (is_turned) std::swap(t[1], t[2]);
       const Vec3d middle = (made->points[t[0]] + made->points[t[1]] + made->points[t[2]]) / 3.0;
@@ -440,13 +431,26 @@ class Assembly {
     return true;
   }
 
-  /// Returns a direction from a sheet into the region of its second site.
-  [[nodiscard]] Vec3d towards_second(const Sheet& sheet, const Vec3d& at) const {
-    const DomainSide* side = sites_.side_between(sheet.first, sheet.second);
-    if (side == nullptr) return sites_.gradient(sheet.first, at) - sites_.gradient(sheet.second, at);
-    // The side points towards the domain of the smaller site.
-    const bool is_first = static_cast<int>(sites_[sheet.first].kind) < static_cast<int>(sites_[sheet.second].kind);
-    return is_first ? -side->normal : side->normal;
+  /// Returns true if triangles run in the direction of the outer loop: the first edge of the loop is one of theirs.
+  static bool is_along_boundary(const std::vector<Triangle>& triangles) {
+    return std::any_of(triangles.begin(), triangles.end(), [](const Triangle& t) {
+      return (t[0] == 0 && t[1] == 1) || (t[1] == 0 && t[2] == 1) || (t[2] == 0 && t[0] == 1);
+    });
+  }
+
+  /// Returns true if triangles that run in the direction of the outer loop face the region of the sheet's second site.
+  [[nodiscard]] bool loop_faces_second(const Sheet& sheet) const {
+    for (const TracedStructure::Side& side : sheet.loops[0]) {
+      const std::vector<RegionRing::Germ>& germs = structure_.curves[side.curve].ring.germs;
+      const auto has_pair = [&](const RegionRing::Germ& germ) {
+        return std::minmax(germ.before, germ.after) == std::minmax(sheet.first, sheet.second);
+      };
+      if (std::count_if(germs.begin(), germs.end(), has_pair) != 1) continue;
+      // Seen from the tip of the curve, the region after the wall is counterclockwise of it.
+      const auto germ = std::find_if(germs.begin(), germs.end(), has_pair);
+      return side.is_forward == (germ->after == sheet.second);
+    }
+    return true;
   }
 
   void add_surface() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -78,11 +79,11 @@ SideIndex index_of(const std::vector<DomainSide>& sides) {
 }
 
 /// Returns the differences that count as 0.
-/// @param flatness  of joined triangles that stay where they are; otherwise 0.
-TracePrecision precision_of(const Box3& box, double flatness, TracedPlaces places) {
+/// @param least  tolerance of distances from joined triangles that stay where they are; otherwise 0.
+TracePrecision precision_of(const Box3& box, double least, TracedPlaces places) {
   // Tolerances are relative to the size of the solid. Coordinates far from the origin have larger rounding errors.
   const auto tolerance = [&](double relative, double rounding) {
-    return std::max({relative * box.diagonal(), rounding * box.largest_coordinate(), 4 * flatness});
+    return std::max({relative * box.diagonal(), rounding * box.largest_coordinate(), least});
   };
   if (places == TracedPlaces::merged) {
     const double distance = tolerance(1e-10, 0x1p-47);
@@ -130,8 +131,7 @@ class SiteFinder {
   void place() {
     const Box3 box = bounds(mesh_);
     out_.extent_ = box.diagonal();
-    const bool moves = places_ == TracedPlaces::separate;
-    out_.precision_ = precision_of(box, moves ? 0 : flatness_, places_);
+    out_.precision_ = precision_of(box, 0, places_);
     out_.origin_ = box.center();
     for (const Vec3d& p : mesh_.vertices) out_.vertices_.push_back(p - out_.origin_);
   }
@@ -184,7 +184,19 @@ class SiteFinder {
       face.direction = unit(face.direction);
       face.axes = axes_across(face.direction);
     }
+    if (places_ == TracedPlaces::merged) {
+      out_.precision_ = precision_of(bounds(mesh_), std::max(flatness_, 4 * bend()), places_);
+    }
     return true;
+  }
+
+  /// Returns the largest distance of a corner of a triangle from the plane of its face.
+  [[nodiscard]] double bend() const {
+    double most = 0;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (const Vec3d& p : corners_of(t)) most = std::max(most, std::abs(out_.distance(out_.face_of_[t], p)));
+    }
+    return most;
   }
 
   /// Adds the boundaries of faces and the reflex edges.
@@ -479,6 +491,35 @@ const DomainSide* TracedSites::side_between(Index first, Index second) const {
   return nullptr;
 }
 
+std::optional<TracedSites::EdgePlane> TracedSites::plane_between_edges(Index first, Index second) const {
+  const TracedSite& a = sites_[first];
+  const TracedSite& b = sites_[second];
+  if (first == second || a.kind != SiteKind::edge || b.kind != SiteKind::edge) return std::nullopt;
+  for (const std::uint32_t v : a.vertices) {
+    if (v != b.vertices[0] && v != b.vertices[1]) continue;
+    const Vec3d& apex = vertices_[v];
+    const auto from_apex = [&](const TracedSite& edge) {
+      return edge.point == apex ? edge.direction : -edge.direction;
+    };
+    const Vec3d normal = from_apex(a) - from_apex(b);
+    if (length(normal) > 1e-6) return EdgePlane{unit(normal), apex};
+  }
+  return std::nullopt;
+}
+
+void TracedSites::remove_further_edges(const Vec3d& x, double tolerance, std::vector<Index>& sites) const {
+  if (sites.size() < 2) return;
+  const auto is_further = [&](Index i) {
+    return std::any_of(sites.begin(), sites.end(), [&](Index other) {
+      const auto plane = plane_between_edges(other, i);
+      return plane && plane->height(x) > tolerance;
+    });
+  };
+  std::vector<Index> kept;
+  std::copy_if(sites.begin(), sites.end(), std::back_inserter(kept), [&](Index i) { return !is_further(i); });
+  sites = std::move(kept);
+}
+
 std::vector<const DomainSide*> TracedSites::sides_at(Index i, const Vec3d& x, double tolerance) const {
   const TracedSite& site = sites_[i];
   std::vector<const DomainSide*> out;
@@ -544,6 +585,7 @@ TracedSites::Closest TracedSites::closest_within(const Vec3d& x, double toleranc
     if (d <= out.radius + tolerance) out.sites.push_back(i);
   }
   std::sort(out.sites.begin(), out.sites.end());
+  remove_further_edges(x, tolerance, out.sites);
   return out;
 }
 

@@ -159,10 +159,22 @@ class TracedSites {
   /// line. It points towards the domain of the smaller site, or of `second`. Null for other sites.
   [[nodiscard]] const DomainSide* side_between(Index first, Index second) const;
 
+  /// Plane between the regions of two edges with a common vertex, in which both domains overlap.
+  struct EdgePlane {
+    Vec3d normal;  ///< unit vector into the region of the first edge
+    Vec3d point;
+    [[nodiscard]] double height(const Vec3d& x) const { return dot(normal, x - point); }
+  };
+  /// Returns nothing for other sites. The plane shows which edge is closer where distances differ by less than
+  /// rounding. Near it, they differ by the height times the way along the edge, divided by the radius.
+  [[nodiscard]] std::optional<EdgePlane> plane_between_edges(Index first, Index second) const;
+
   /// The closest sites of a point.
   struct Closest {
     double radius = std::numeric_limits<double>::infinity();
-    std::vector<Index> sites;  ///< ascending: all within the tolerance of the radius
+    /// Ascending: all within the tolerance of the radius. If planes between edges show that one is closer, without the
+    /// others.
+    std::vector<Index> sites;
     std::size_t examined = 0;  ///< sites whose distance was computed
   };
   /// @param guess  of the radius. The search is fast if the radius is at most this value, and not much smaller.
@@ -182,6 +194,7 @@ class TracedSites {
  private:
   friend class SiteFinder;
   [[nodiscard]] Closest closest_within(const Vec3d& x, double tolerance, double limit) const;
+  void remove_further_edges(const Vec3d& x, double tolerance, std::vector<Index>& sites) const;
   [[nodiscard]] double outside_polygon(const TracedSite& face, const Vec3d& x, double most) const;
 
   std::vector<TracedSite> sites_;

@@ -59,7 +59,7 @@ std::uint64_t default_work(const TracedSites& sites, std::size_t triangles) {
     constexpr std::uint64_t least_per_site = 10'000, most_per_site = 40'000, most = 30'000'000;
     return least_per_site * count > most ? 0 : std::min(most_per_site * count, most);
   }
-  constexpr std::uint64_t per_small_site = 130'000, base = 40'000'000, per_site = 15'000, most = 300'000'000;
+  constexpr std::uint64_t per_small_site = 130'000, base = 110'000'000, per_site = 15'000, most = 300'000'000;
   return std::min({per_small_site * count, base + per_site * count, most});
 }
 
