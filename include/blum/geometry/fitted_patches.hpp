@@ -46,7 +46,7 @@ void check_patch_fit(const std::optional<double>& tolerance);
 /// Several shapes may fit the same seed. The one with the largest part is chosen. If their parts are about equal, a
 /// plane comes first. Otherwise, the least mean deviation decides, over vertices, and middles of edges and triangles.
 /// Afterwards, faces at the border of two parts change to the part with the smaller deviation at their vertices. Flat
-/// faces that fit no other shape are planes. docs/theory/voronoi.md#fitted-patches lists all rules.
+/// faces that fit no other shape are planes. Section "Fitted patches" of docs/theory/voronoi.md lists all rules.
 ///
 /// @param sites  of the mesh, which passes validate().
 /// @throws Cancelled. Cost: near-linear, about 10 us per triangle. It runs on one thread.

@@ -73,7 +73,7 @@ struct Description<VoronoiPatch> {
 /// VoronoiReport joined it to another face.
 /// With `patch_fit`, patches of faces are those of the shapes that fit them. Flat faces that fit no sphere, cylinder or
 /// cone are planes. Where several shapes fit, the one with the largest part is chosen, and then the least deviation
-/// decides (docs/theory/voronoi.md#fitted-patches). Patches do not depend on the number of threads.
+/// decides (docs/theory/voronoi.md, "Fitted patches"). Patches do not depend on the number of threads.
 /// @param sites  result of voronoi_sites() for this mesh.
 /// @throws InvalidOption if the angle or the tolerance is out of range, or if the sites are not those of the mesh;
 /// InvalidMesh; Cancelled. Cost: O(n log n) for n triangles, about 1 us per triangle; about 20 us with `patch_fit`.
