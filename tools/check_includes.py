@@ -35,6 +35,7 @@ LOWER = {
     "axis": {"core", "geometry", "grid", "complex", "solid"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field", "axis"},
     "proximity": {"core", "exact", "geometry", "grid", "complex", "solid"},
+    "planning": {"core", "geometry"},
     "voronoi": {"core", "exact", "geometry", "grid", "complex", "solid"},
     "certificate": {"core", "complex"},
     "certified": {"core", "geometry", "grid", "complex", "solid", "field", "axis", "medial_axis", "certificate"},
