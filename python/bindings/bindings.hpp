@@ -25,6 +25,7 @@ void bind_centreline(nb::module_& m);
 void bind_certificate(nb::module_& m);
 void bind_proximity(nb::module_& m);
 void bind_proximity_scene(nb::module_& m);
+void bind_planning(nb::module_& m);
 void bind_files(nb::module_& m);
 
 }  // namespace blum::python

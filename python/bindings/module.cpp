@@ -81,5 +81,6 @@ NB_MODULE(_core, m) {
   bind_certificate(m);
   bind_proximity(m);
   bind_proximity_scene(m);
+  bind_planning(m);
   bind_files(m);
 }

@@ -21,27 +21,17 @@
 #include "blum/geometry/triangle_distance.hpp"
 #include "call.hpp"
 #include "contacts.hpp"
+#include "places.hpp"
 #include "structs.hpp"
 
 namespace blum::python {
 namespace {
 
-/// Matrix with the rotation in its first three columns and the translation in the last one.
-using PlaceIn = In<double, nb::shape<3, 4>>;
 /// Matrices of three or four rows.
 using PlacesIn = In<double, nb::shape<-1, -1, 4>>;
 using TrianglesOfPointsIn = In<double, nb::shape<-1, 3, 3>>;
 /// Vertices of the features of both sides, as in files.
 using Features = std::array<std::array<std::int32_t, 3>, 2>;
-
-RigidTransform place_of(const PlaceIn& rows) {
-  RigidTransform place;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t k = 0; k < 3; ++k) place.rotation.columns[k][row] = rows(row, k);
-    place.translation[row] = rows(row, 3);
-  }
-  return place;
-}
 
 std::vector<RigidTransform> places_of(const PlacesIn& given, const Context& context) {
   constexpr std::size_t grain = 512;

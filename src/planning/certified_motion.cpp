@@ -15,6 +15,7 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/geometry/oriented_bvh.hpp"
+#include "blum/geometry/triangle_distance.hpp"
 
 namespace blum {
 namespace {
@@ -38,7 +39,8 @@ class RigidMesh {
       return;
     }
     std::vector<std::uint32_t> used;
-    for (const std::array<std::uint32_t, 3>& corners : primitives_) used.insert(used.end(), corners.begin(), corners.end());
+    for (const std::array<std::uint32_t, 3>& corners : primitives_)
+      used.insert(used.end(), corners.begin(), corners.end());
     detail::sort_unique(used);
     for (const std::uint32_t v : used) hull_points_.push_back(vertices_[v]);
   }
@@ -137,10 +139,10 @@ class MotionTests {
     obstacles_.bvh().for_each_near_pair(
         body_.bvh(), pose, limit + error_,
         [&](std::uint32_t obstacle, std::uint32_t own, double) -> OrientedBvh::Wanted {
-          const TriangleDistance between = triangle_distance(body_.corners(own, pose), obstacles_.corners(obstacle));
-          if (between.distance <= limit && (!best || between.distance < best->between.distance)) {
-            best = MotionPair{own, obstacle, between};
-            limit = between.distance;
+          const TriangleDistance found = triangle_distance(body_.corners(own, pose), obstacles_.corners(obstacle));
+          if (found.distance <= limit && (!best || found.distance < best->distance)) {
+            best = MotionPair{own, obstacle, found.distance, found.first_point, found.second_point};
+            limit = found.distance;
           }
           return limit == 0 ? -1.0 : limit + error_;
         });
@@ -180,7 +182,7 @@ std::optional<std::pair<double, MotionPair>> contact_after(const MotionTests& te
   double step = 0;
   for (double time = doubt.middle(); time <= 1; time = doubt.middle() + step) {
     const auto pair = tests.closest(time, 0);
-    if (pair && pair->between.distance == 0) return std::pair(time, *pair);
+    if (pair && pair->distance == 0) return std::pair(time, *pair);
     step = step == 0 ? std::max(doubt.to - doubt.from, 0x1p-40) : 2 * step;
   }
   return std::nullopt;

@@ -83,6 +83,8 @@ def results():
         "closest_primitives": moving.closest_primitives(),
         "penetrations": moving.penetrations(),
         "least_translation": blum.least_translation(blum.generate("box"), blum.generate("box")),
+        "certify_motion": blum.certify_motion(BRACKET, BRACKET, (np.eye(3), (9, 0, 0)), (np.eye(3), (0, 0, 0))),
+        "MotionCertifier": blum.MotionCertifier(BRACKET, BRACKET),
         "continuous": moving.continuous({0: blum.generate("bracket").vertices + 1}),
         "continuous_collisions": blum.continuous_collisions(BRACKET, BRACKET.vertices + 1),
         "first_contact": blum.first_contact(BRACKET, BRACKET.vertices * [1, 1, -1]),

@@ -1,4 +1,4 @@
-// Chooses how many cases of large families are tested, as tests/python/amount.py.
+// Blum: how many cases of large families are tested, as tests/python/amount.py. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>

@@ -11,7 +11,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
-#include "blum/geometry/triangle_distance.hpp"
+#include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/planning/rigid_motion.hpp"
 
@@ -58,25 +58,58 @@ struct Description<MotionOptions> {
 struct MotionPair {
   std::uint32_t body = 0;
   std::uint32_t obstacle = 0;
-  TriangleDistance between;
+  double distance = 0;  ///< Mesh units. 0 if and only if the primitives meet.
+  Vec3d on_body;        ///< If the primitives meet, a point near both.
+  Vec3d on_obstacle;
+};
+
+template <>
+struct Description<MotionPair> {
+  static constexpr std::string_view name = "MotionPair";
+  static constexpr std::string_view doc = "Closest primitives of a moving body and of obstacles";
+  static constexpr std::tuple members{
+      Member{"body", &MotionPair::body, "",
+             "primitive of the body: triangles are numbered first, then segments, then points"},
+      Member{"obstacle", &MotionPair::obstacle, "", "primitive of the obstacles"},
+      Member{"distance", &MotionPair::distance, "mesh units", "distance; 0 if and only if the primitives meet"},
+      Member{"on_body", &MotionPair::on_body, "mesh units",
+             "closest point of the body; if they meet, a point near both"},
+      Member{"on_obstacle", &MotionPair::on_obstacle, "mesh units", "closest point of the obstacles"},
+  };
 };
 
 struct CertifiedMotion {
   MotionVerdict verdict = MotionVerdict::free;
   /// Before this time, the motion is proven to keep the clearance. 1 if it is free. 0 to 1.
   double free_until = 0;
-  double time = 1;                         ///< If not free: a time at which the verdict holds.
+  double time = 1;                         ///< If not free: a time at which the verdict holds, 0 to 1.
   std::optional<MotionPair> closest = {};  ///< If not free: the closest pair at `time`.
   std::size_t tests = 0;                   ///< Poses at which distances were compared.
+};
+
+template <>
+struct Description<CertifiedMotion> {
+  static constexpr std::string_view name = "CertifiedMotion";
+  static constexpr std::string_view doc = "Answer about a motion";
+  static constexpr std::tuple members{
+      Member{"verdict", &CertifiedMotion::verdict, "",
+             "free: it keeps the clearance at all times; too_close: at 'time', the surfaces are closer than the "
+             "clearance plus delta; colliding: at 'time', they meet"},
+      Member{"free_until", &CertifiedMotion::free_until, "",
+             "before this time, the motion is proven to keep the clearance; 1 if it is free"},
+      Member{"time", &CertifiedMotion::time, "", "if not free: a time at which the verdict holds"},
+      Member{"closest", &CertifiedMotion::closest, "", "if not free: the closest pair at 'time'"},
+      Member{"tests", &CertifiedMotion::tests, "", "poses at which distances were compared"},
+  };
 };
 
 /// Certifies motions of one body among obstacles that rest. Several threads may certify motions at the same time.
 ///
 /// Only surfaces count. A body inside the solid of an obstacle does not meet it.
 ///
-/// Method: adaptive bisection of time. If the surfaces are further apart at the middle of an interval than the
-/// clearance plus the way of every point of the body in half the interval, the interval is free (Schwarzer, Saha and
-/// Latombe 2005). Rounding is part of the bound: docs/theory/planning.md.
+/// Method: adaptive bisection of time. The surfaces must be far apart at the middle of each interval. The distance must
+/// be above the clearance plus the way of each point in half the interval (Schwarzer, Saha and Latombe 2005). Rounding
+/// is part of the bound: docs/theory/planning.md.
 class MotionCertifier {
  public:
   /// @param body, obstacles  must pass validate(mesh). Coordinates are of magnitude at most 1e70.
@@ -86,10 +119,11 @@ class MotionCertifier {
   MotionCertifier& operator=(MotionCertifier&&) noexcept;
   ~MotionCertifier();
 
-  /// Returns the middle of the box around the body, in its coordinates. As the centre of motions, it gives small bounds.
+  /// Returns the middle of the box around the body, in its coordinates. As the centre of motions, it gives small
+  /// bounds.
   [[nodiscard]] Vec3d centre() const;
 
-  /// Returns what is proven of a motion. Of several places that are too close, it returns the first.
+  /// Returns what is proven of a motion. If several places are too close, it returns the first one.
   /// @throws InvalidOption; Cancelled.
   /// Cost: a test takes about a microsecond. A free motion needs about 2 L / d tests, for a way L of the body at a
   /// distance d. A motion that nearly touches needs up to 2 L / delta.

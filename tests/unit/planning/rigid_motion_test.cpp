@@ -1,4 +1,5 @@
-// Proves that motions lead from one pose to the other at constant speeds, also for turns of nearly 0 and of 180 degrees.
+// Proves that motions lead from one pose to the other at constant speeds, also for turns of nearly 0 and of 180
+// degrees.
 #include "blum/planning/rigid_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,8 @@ RigidTransform turned(const Vec3d& axis, double angle, const Vec3d& translation 
   for (std::size_t k = 0; k < 3; ++k) {
     Vec3d e;
     e[k] = 1;
-    out.rotation.columns[k] = e * std::cos(angle) + cross(a, e) * std::sin(angle) + a * (dot(a, e) * (1 - std::cos(angle)));
+    out.rotation.columns[k] =
+        e * std::cos(angle) + cross(a, e) * std::sin(angle) + a * (dot(a, e) * (1 - std::cos(angle)));
   }
   out.translation = translation;
   return out;

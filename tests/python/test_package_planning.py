@@ -1,0 +1,81 @@
+"""Proves answers about motions: SciPy interpolates the poses, and a scene gives the distance at each of them."""
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+transform = pytest.importorskip("scipy.spatial.transform")
+
+SHAPES = [blum.generate(name) for name in ("box", "torus", "bracket", "star")]
+
+
+def pose(random, far):
+    return transform.Rotation.random(random_state=random.integers(2**31)), random.uniform(-far, far, 3)
+
+
+def poses_between(start, goal, centre, times):
+    """The poses at some times: the centre moves along a line."""
+    turns = transform.Slerp([0, 1], transform.Rotation.concatenate([start[0], goal[0]]))(times)
+    first, last = (turn.apply(centre) + shift for turn, shift in (start, goal))
+    places = first + np.asarray(times)[:, None] * (last - first)
+    return [(turn.as_matrix(), place - turn.apply(centre)) for turn, place in zip(turns, places, strict=True)]
+
+
+def distances(body, obstacles, poses):
+    scene = blum.ProximityScene()
+    fixed, moving = scene.add(obstacles), scene.add(body)
+    found = []
+    for rotation, translation in poses:
+        scene.update(moving, transform=(rotation, translation))
+        found.append(scene.separation(fixed, moving).distance)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.1])
+def test_answers_are_those_of_samples(clearance):
+    random = np.random.default_rng(7)
+    delta, count = 1e-4, dict.fromkeys(("free", "too_close", "colliding"), 0)
+    for _ in range(60):
+        body, obstacles = SHAPES[random.integers(4)], SHAPES[random.integers(4)]
+        start, goal, centre = pose(random, 3), pose(random, 3), random.uniform(-1, 1, 3)
+        found = blum.certify_motion(
+            body,
+            obstacles,
+            (start[0].as_matrix(), start[1]),
+            (goal[0].as_matrix(), goal[1]),
+            centre=centre,
+            clearance=clearance,
+            delta=delta,
+        )
+        count[found.verdict] += 1
+        before = np.linspace(0, found.free_until, 60, endpoint=found.verdict == "free")
+        if found.free_until > 0:
+            assert distances(body, obstacles, poses_between(start, goal, centre, before)).min() > clearance - 1e-12
+        if found.verdict == "free":
+            assert found.closest is None
+            continue
+        (there,) = distances(body, obstacles, poses_between(start, goal, centre, [found.time]))
+        assert np.isclose(found.closest.distance, there, atol=1e-9)
+        assert there <= clearance + delta + 1e-9
+        assert (found.closest.distance == 0) == (found.verdict == "colliding")
+    assert count["free"] > 5 and count["colliding"] > 5
+
+
+def test_points_and_default_centre():
+    """Without a turn, the centre does not matter. The pair of a contact is reported with its points."""
+    box, identity = blum.generate("box"), np.eye(3)
+    certifier = blum.MotionCertifier(box, box)
+    found = certifier.certify((identity, (-3, 0, 0)), (identity, (-1.25, 0, 0)), clearance=0.5)
+    assert found.verdict == "too_close" and np.isclose(found.free_until, 1.5 / 1.75, atol=1e-5)
+    assert np.allclose([found.closest.on_body[0], found.closest.on_obstacle[0]], [-1.0, -0.5], atol=1e-5)
+    assert certifier.certify((identity, (-3, 0, 0)), (identity, (-1.25, 0, 0)), clearance=0.2).verdict == "free"
+
+
+def test_wrong_arguments_are_named():
+    box, at = blum.generate("box"), (np.eye(3), (0, 0, 0))
+    with pytest.raises(blum.InvalidOption, match="clearance"):
+        blum.certify_motion(box, box, at, at, clearance=-1)
+    with pytest.raises(blum.InvalidOption, match="rotation of the pose at time 1"):
+        blum.certify_motion(box, box, at, (2 * np.eye(3), (0, 0, 0)))
+    with pytest.raises(ValueError, match="transform has the shape"):
+        blum.certify_motion(box, box, at, np.eye(2))
