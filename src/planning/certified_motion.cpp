@@ -15,6 +15,7 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/geometry/oriented_bvh.hpp"
+#include "blum/geometry/primitives.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 
 namespace blum {
@@ -25,9 +26,7 @@ class RigidMesh {
  public:
   RigidMesh(const MeshView& mesh, const Context& context)
       : vertices_(mesh.vertices.begin(), mesh.vertices.end()), bvh_(mesh, context) {
-    for (const Triangle& t : mesh.triangles) primitives_.push_back({t[0], t[1], t[2]});
-    for (const Segment& s : mesh.segments) primitives_.push_back({s[0], s[1], s[1]});
-    for (const std::uint32_t p : mesh.points) primitives_.push_back({p, p, p});
+    for (std::uint32_t k = 0; k < bvh_.size(); ++k) primitives_.push_back(primitive_vertices(mesh, k));
     constexpr std::size_t many = 1024;
     if (3 * primitives_.size() > many) {
       for (unsigned k = 0; k < 8; ++k) {

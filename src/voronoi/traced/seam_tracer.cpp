@@ -269,19 +269,26 @@ double SeamTracer::gap_to(Index site, const Vec3d& x, double beyond, double radi
   return sites_.least_distance(site, x, beyond) - radius;
 }
 
+template <class WayToZero>
+double SeamTracer::way_past_edges(const TracedCurve& curve, Index site, const Vec3d& x,
+                                  const WayToZero& way_to_zero) const {
+  double out = 0;
+  for (const Index own : curve.sites) {
+    const auto plane = sites_.plane_between_edges(own, site);
+    if (!plane) continue;
+    const double height = plane->height(x);
+    if (height > 0) out = std::max(out, way_to_zero(height, plane->normal));
+  }
+  return out;
+}
+
 std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                         double radius, double most) const {
   std::vector<Room> out;
   const SeamLine line{curve.sites[0], x, along};
-  const auto way_past_edges = [&](Index i) {
-    double out = 0;
-    for (const Index own : curve.sites) {
-      const auto plane = sites_.plane_between_edges(own, i);
-      if (!plane) continue;
-      const double height = plane->height(x), rate = -dot(plane->normal, along);
-      if (height > 0) out = std::max(out, rate > 0 ? std::min(height / rate, most) : most);
-    }
-    return out;
+  const auto way_to_zero = [&](double value, const Vec3d& slope) {
+    const double rate = -dot(slope, along);
+    return rate > 0 ? value / rate : most;
   };
   // The radius is convex along the line. So all balls around its points lie in the ball around its middle.
   const Vec3d middle = x + along * (0.5 * most);
@@ -293,7 +300,8 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_line(const TracedCurve& curve
     if (contact >= most) return;
     const double beyond = sites_.outside(i, x, most);
     if (beyond >= most) return;
-    const double step = std::max({contact, gap_to(i, x, beyond, radius) / 2, beyond, way_past_edges(i)});
+    const double step = std::max(
+        {contact, gap_to(i, x, beyond, radius) / 2, beyond, std::min(way_past_edges(curve, i, x, way_to_zero), most)});
     if (step < most) out.push_back({step, i});
   });
   return out;
@@ -343,12 +351,7 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve
                              : first_root(gap, dot(sites_.gradient(i, x), along) - own_rate, bend);
       step = std::max(step, std::min(way, most));
     }
-    for (const Index own : curve.sites) {
-      const auto between = sites_.plane_between_edges(own, i);
-      if (!between) continue;
-      const double height = between->height(x);
-      if (height > 0) step = std::max(step, std::min(way_to_zero(height, between->normal), most));
-    }
+    step = std::max(step, std::min(way_past_edges(curve, i, x, way_to_zero), most));
     if (step < most) out.push_back({std::max(step, 0.0), i});
   });
   return out;
