@@ -406,17 +406,19 @@ class AxisExtender {
   void warn() {
     const ExtendReport& report = out_.report;
     if (report.open_length > 0) {
-      out_.warnings.emplace_back(
-          WarningCode::not_extended,
-          "rims of length " + rounded_text(report.open_length) + ", of " + rounded_text(report.rim_length) +
-              " in total, are not extended: nothing is within reach, or triangles would fold back or leave the solid");
+      out_.warnings.emplace_back(WarningCode::not_extended,
+                                 "rims of length " + rounded_text(report.open_length) + ", of " +
+                                     rounded_text(report.rim_length) +
+                                     " in total, are not extended: the surface is too far away, or triangles would "
+                                     "fold back or leave the solid");
     }
     if (report.unshared_length > 0) {
-      out_.warnings.emplace_back(WarningCode::not_extended,
-                                 "extensions meet other sheets without shared vertices along " +
-                                     rounded_text(report.unshared_length) + ", and with shared ones along " +
-                                     rounded_text(report.seam_length) +
-                                     ": they do not fit, or shared vertices would change the topology");
+      out_.warnings.emplace_back(
+          WarningCode::not_extended,
+          "extensions meet other sheets without shared vertices along a length of " +
+              rounded_text(report.unshared_length) + ", and with shared vertices along " +
+              rounded_text(report.seam_length) +
+              ": vertices cannot be shared everywhere, because sheets do not fit or the topology would change");
     }
   }
 

@@ -429,7 +429,7 @@ std::vector<std::uint8_t> ProximityScene::meets(ObjectId first, ObjectId second,
   const TwoObjects two = data_->two(first, second);
   if (first == second) {
     throw InvalidOption("object " + std::to_string(first.value) +
-                        " cannot meet itself at another place; add its mesh a second time");
+                        " cannot be tested against another pose of itself; add its mesh a second time");
   }
   return detail::meet_at(*two.a, *two.b, transforms, context);
 }

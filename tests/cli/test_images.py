@@ -163,9 +163,9 @@ DIRECTIONS = "space: left-posterior-superior\nspace directions: (2,0,0) (0,3,0) 
 
 def test_nrrd_frames(tmp_path):
     _, err = run("info", nrrd(tmp_path / "a.nrrd", DIRECTIONS + "\nspacings: 2 3.5 4"), warns=True)
-    assert "space directions and spacings disagree at axis 1: 3 and 3.5; the former is used" in err
+    assert "space directions and spacings disagree at axis 1: 3 and 3.5; the space directions are used" in err
     _, err = run("info", nrrd(tmp_path / "a.nrrd", DIRECTIONS + "\naxis mins: 1 2 9"), warns=True)
-    assert "space origin and 'axis mins' disagree at axis 2: 3 and 9; the former is used" in err
+    assert "space origin and 'axis mins' disagree at axis 2: 3 and 9; the space origin is used" in err
     run("info", nrrd(tmp_path / "a.nrrd", DIRECTIONS + "\nspacings: 2 3 nan\naxis mins: nan 2 3"))
     sheared = "space dimension: 3\nspace directions: (2,0,0) (0.3,3,0) (0,0,4)\nspace origin: (1,2,3)"
     _, err = run("info", nrrd(tmp_path / "a.nrrd", sheared), status=1)

@@ -18,10 +18,10 @@ void add_text_option(const Command& command, const char* name, std::optional<std
 void add_label_option(const Command& command, std::vector<std::string>& labels, const char* help);
 
 /// Adds --weld, whose value may be omitted; see prepare_weld().
-void add_weld_option(
-    const Command& command, std::optional<std::string>& weld,
-    const char* help =
-        "Mesh: merge equal vertices; with TOL, vertices at most TOL mesh units apart (default for STL: equal ones)");
+void add_weld_option(const Command& command, std::optional<std::string>& weld,
+                     const char* help =
+                         "Mesh: merge equal vertices; with TOL, vertices at most TOL mesh units apart (default for "
+                         "STL: merge equal vertices)");
 
 /// Help of --weld for commands that read a medial axis. The axis's file may record the tolerance.
 constexpr const char* weld_of_axis_help =

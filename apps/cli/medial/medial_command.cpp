@@ -560,7 +560,8 @@ void add_medial_command(const CommandLine& line) {
   };
   text("--theta", a->theta, "DEG",
        "Keep cells with separation angles above DEG degrees (default 60), and cells that connect them; several angles "
-       "(20,60) give one file each. With --decimate 0, the axis of a larger angle is part of that of a smaller one");
+       "(20,60) give one file each. With --decimate 0, the axis of a larger angle is part of the axis of a smaller "
+       "angle");
   text("--decimate", a->decimate, "TOL",
        "Reduce the number of triangles; the axis moves by at most TOL mesh units (default: a quarter of a voxel; 0 "
        "keeps all)");

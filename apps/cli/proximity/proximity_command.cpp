@@ -57,11 +57,12 @@ void add_query(const Command& parent, const SceneQuery& query) {
                     "rest, repeat its file")
         .type_name("END");
   }
-  command.add_flag("--self", a->self,
-                   query.has_pairs
-                       ? "Also compare each object with itself, except primitives with a common vertex. Without "
-                         "--max-distance, collide also returns those that cross or are folded onto each other"
-                       : "Also compare each object with itself, as collide does");
+  command.add_flag(
+      "--self", a->self,
+      query.has_pairs
+          ? "Also compare each object with itself, except primitives with a common vertex. Without "
+            "--max-distance, collide also returns pairs with a common vertex that cross or are folded onto each other"
+          : "Also compare each object with itself, by the same rules as collide");
   if (query.takes_frames) {
     command.add_flag(
         "--frames", a->frames,
@@ -69,9 +70,10 @@ void add_query(const Command& parent, const SceneQuery& query) {
         "view --frames --pairs`");
   }
   if (query.moves) {
-    command.add_flag("--first", a->first,
-                     "Find only the first contact: of the pairs that meet first, the first by index. Much faster if "
-                     "many pairs meet; counts and -o contain this pair alone");
+    command.add_flag(
+        "--first", a->first,
+        "Find only the first contact (of several at the same time, the one with the smallest indices). Much faster if "
+        "many pairs meet; counts and -o then contain only this pair");
     command.add_flag("--skip-changed", a->skip_changed,
                      "With --frames: skip and list steps between frames that differ in triangles or numbers of "
                      "vertices (default: report an error)");

@@ -187,7 +187,8 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
                                  " from the planes of their faces");
   }
   if (report.joined > 0) {
-    table.detail("joined", "junctions and seams within " + share_text(report.joined, size) + " of each other are one");
+    table.detail("joined",
+                 "junctions and seams within " + share_text(report.joined, size) + " of each other are merged");
   }
   if (report.traced) {
     table.add("traced", "walls are at most " + share_text(report.label_error, size) +
@@ -400,7 +401,7 @@ Diagram certified_diagram(const Arguments& a, const Request& r, const Solid& sol
   Diagram second = make_diagram(a, r, options, solid, input, context);
   const bool is_better = second.mismatches.empty() && second.axis && second.axis->mismatches.empty();
   if (is_better) {
-    second.made.report.trace_problem = "the certificate refuses the traced axis: " + first.axis->mismatches.front();
+    second.made.report.trace_problem = "the traced axis is not certified: " + first.axis->mismatches.front();
   }
   Diagram& best = is_better ? second : first;
   const Diagram& other = is_better ? first : second;

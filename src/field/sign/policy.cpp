@@ -31,19 +31,16 @@ std::vector<Warning> facing_warnings(const Orientation& facts, bool crosses) {
   const auto warn = [](std::string text) { return std::vector<Warning>{{WarningCode::facing, std::move(text)}}; };
   if (facts.inconsistent_edges > 0) {
     return warn(plural(facts.inconsistent_edges, "edge lies", "edges lie") +
-                " between triangles that face different ways, so signs near them may not be those of a solid; orient "
-                "the mesh first, with oriented_mesh() or `blum clean`");
+                " between triangles that face different ways, so signs near these edges may be wrong; orient the mesh "
+                "first, with oriented_mesh() or `blum clean`");
   }
   if (!facts.closed || !facts.oriented || facts.outward) return {};
   if (facts.signed_volume < 0) {
-    return warn(
-        "the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its "
-        "triangles");
+    return warn("the mesh is inside out (its volume is negative), so signs are wrong; reverse its triangles");
   }
   if (crosses) return {};
   return warn(
-      "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; "
-      "topology() lists the shells");
+      "parts of the mesh face the wrong way or enclose nothing, so signs may be wrong; topology() lists the shells");
 }
 
 /// Returns true if the mesh becomes outward-facing when all its triangles are reversed.
@@ -194,8 +191,8 @@ Plan Planner::plan_as_given(const MeshView& mesh, const SiteTable& sites, const 
   FacingRepair repair = repair_facing(mesh, sites, facts, crosses, context);
   if (!repair.triangles.empty()) {
     plan.warnings = {{WarningCode::facing,
-                      "parts of the mesh face the wrong way, so signs are not those of a solid: flip their triangles, "
-                      "or use the sign mode auto"}};
+                      "parts of the mesh face the wrong way, so signs are wrong there; reverse their triangles, or use "
+                      "the sign mode auto"}};
   }
   add_warnings(plan, std::move(repair.warnings));
   return plan;

@@ -358,7 +358,8 @@ class HeaderParser {
           WarningCode::left_out,
           name_ + ": its " + (same_step ? "space origin and 'axis mins'" : "space directions and spacings") +
               " disagree at axis " + std::to_string(a) + ": " + exact_text(same_step ? start : step) + " and " +
-              exact_text(same_step ? other.origin[i] : other.spacing[i]) + "; the former is used");
+              exact_text(same_step ? other.origin[i] : other.spacing[i]) + "; the " +
+              (same_step ? "space origin is used" : "space directions are used"));
       return;
     }
   }

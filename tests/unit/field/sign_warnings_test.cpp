@@ -341,8 +341,8 @@ TEST(FieldWarnings, OfGridsWithoutANodeInside) {
   fold.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   fold.triangles = {{0, 1, 2}, {1, 2, 3}};
   EXPECT_EQ(text_of(fold, WarningCode::nothing_inside),
-            "no node is inside: 1 edge lies between triangles that face different ways, so signs near them may not be "
-            "those of a solid; orient the mesh first, with oriented_mesh() or `blum clean`");
+            "no node is inside: 1 edge lies between triangles that face different ways, so signs near these edges may "
+            "be wrong; orient the mesh first, with oriented_mesh() or `blum clean`");
 }
 
 }  // namespace
