@@ -86,8 +86,8 @@ def match_sheets(
 ) -> SheetMatches:
     """Compares the sheets of two medial axes of one solid, and returns those that both have.
 
-    Points are spread evenly over each sheet. Each lies on the sheet of the closest triangle of the other axis, if this
-    triangle is within the tolerance. Two sheets are partners if more than half of each lies on the other.
+    Points are spread evenly over each sheet. A point lies on the sheet of the closest triangle of the other axis, if
+    this triangle is within the tolerance. Two sheets are partners if more than half of each lies on the other.
 
     Parameters
     ----------
@@ -100,8 +100,9 @@ def match_sheets(
     Returns
     -------
     SheetMatches
-        `first` and `second` list the sheets of each axis. Each has its `partner`, and all `overlaps` with sheets of the
-        other axis. If both axes have patches (`with_patches`), `sides` contains the patches on both sides of a sheet.
+        `first` and `second` list the sheets of each axis. Each sheet has its `partner`, and all `overlaps` with sheets
+        of the other axis. If both axes have patches (`with_patches`), `sides` contains the patches on both sides of a
+        sheet.
 
     Examples
     --------

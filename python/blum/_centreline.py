@@ -174,8 +174,8 @@ def centreline(
     """Computes the centreline of each label of an image, as a graph of curves with radii.
 
     Each nonzero value is a label, unless `labels`, `label` or `threshold` selects voxels. Voids are filled first. The
-    curves have the components and tunnels of the label. The radius at a point is that of the circle with the area of
-    the section there. The ball around a free end touches the tip of the label.
+    curves have the components and tunnels of the label. The radius at a point is that of a circle with the same area as
+    the cross-section there. The ball around a free end touches the tip of the label.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ def clean_mesh(
     ----------
     mesh : mesh or Solid
         A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. Its triangles may face any way, and may
-        cross. If they cross, the result is near the surface without the crossings.
+        cross. If triangles cross, the result is near the surface without the crossings.
     tolerance : float
         Guaranteed bound on the deviation, mesh units. No point of the result is further than this from the mesh, and no
         point of the mesh is further than this from the result.

@@ -108,7 +108,7 @@ class ClosestPointQuery(Rebuilt):
         self._start(as_mesh(mesh, triangles, weld=weld), dict(options), threads, progress)
 
     def _start(self, mesh: Mesh, options: dict[str, Any], threads: int, progress: Progress, queries: int = 0) -> None:
-        """Builds the query. If the number of queries is given, also what answers so many at once."""
+        """Builds the query. If the number of queries is given, also builds the structure for that many queries."""
         self._mesh = mesh
         self._options = options
         with reporting(progress) as report:
@@ -149,11 +149,11 @@ class ClosestPointQuery(Rebuilt):
         ----------
         points : array of shape (..., 3)
         gradient : bool
-            If true, the result has the gradient of the distance at each query. It points away from the surface outside,
-            and towards it inside. On the surface, within rounding, it is the normal of the closest site: the
-            pseudonormal of an edge or vertex (:func:`pseudonormals`), with length 1. It is NaN if nothing lies within
-            max_distance, or if the query lies on a site without a normal. On the medial axis it is one of several
-            directions.
+            If true, the result has the gradient of the distance at each query. Outside, the gradient points away from
+            the surface. Inside, it points towards the surface. On the surface, up to rounding, the gradient is the
+            normal of the closest site: for an edge or vertex, the pseudonormal (:func:`pseudonormals`), with length 1.
+            The gradient is NaN if nothing lies within max_distance, or if the query lies on a site without a normal. On
+            the medial axis, where several points are closest, the gradient belongs to one of these points.
         threads, progress
             As for :func:`distance_field`.
 
@@ -244,8 +244,8 @@ class ClosestPointQuery(Rebuilt):
 
         The vertices are copied.
 
-        This method must not run at the same time as queries. Without signs, it takes about 2 ms for 100,000 triangles
-        on two cores. The sign rule is chosen again, as in a new query object.
+        This method must not run at the same time as queries. Without signs, a refit takes about 2 ms for 100,000
+        triangles on two cores. The sign rule is chosen again, as in a new query object.
 
         Parameters
         ----------
@@ -321,7 +321,7 @@ def winding_number(
         As for :func:`distance_field`.
     points : array of shape (..., 3)
     max_error : float
-        Bound on the error of each value; smaller bounds than 2e-11 count as 2e-11. If the surface has a long boundary,
+        Bound on the error of each value; bounds below 2e-11 are replaced by 2e-11. If the surface has a long boundary,
         a smaller bound takes more time. Soups of 70,000 triangles take about 30 microseconds per point with a bound of
         1e-3, and 250 microseconds with 1e-6. Closed meshes, and meshes with a few holes, take 0.2 to 2 microseconds per
         point.

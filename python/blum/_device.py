@@ -329,19 +329,19 @@ class DeviceFieldSolver(_DeviceSolver):
         out: tuple[Any, Any] | None = None,
         stream: Any = None,
     ) -> DeviceField:
-        """Queues the field of a mesh and returns it. It does not wait for the device.
+        """Queues the computation of a mesh's field, and returns the field without waiting for the device.
 
-        It waits for the device in two cases. Calls with new triangles, segments or points wait. If 64 calls are not
+        There are two exceptions. Calls with new triangles, segments or points wait for the device. If 64 calls are not
         finished, a call waits for the oldest one.
 
         Parameters
         ----------
         vertices : (n, 3) of float32 or float64, on the device
-            If a vertex is not finite, every distance becomes NaN. No error is raised, because nothing waits for the
-            device.
+            If a vertex is not finite, every distance becomes NaN. No error is raised, because the host does not wait
+            for the device.
         triangles, segments, points : (m, 3), (m, 2), (m,) of int32, uint32 or int64, on the device
-            If none of the three is given, the arrays of the last call are used. This saves the search for edges and its
-            wait.
+            If none of the three is given, the arrays of the last call are used. Such a call skips the search for edges,
+            and does not wait for it.
         out : (distance, site), optional
             Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape. Without sites, the
             second entry is None.
@@ -421,7 +421,7 @@ class DeviceDistanceTransform(_DeviceSolver):
         return self._sign_rule
 
     def compute(self, values: Any, *, out: tuple[Any, Any] | None = None, stream: Any = None) -> DeviceField:
-        """Queues the transform of an image and returns it. It does not wait for the device.
+        """Queues the transform of an image, and returns the transform without waiting for the device.
 
         There is one exception: if 64 calls are not finished, a call waits for the oldest one.
 
@@ -429,8 +429,8 @@ class DeviceDistanceTransform(_DeviceSolver):
         ----------
         values : (z, y, x) of booleans or numbers, on the device
             If no voxel is selected, distances are infinite (with a band: its half-width), and no voxel has a site. A
-            signed transform has the same result if every voxel is selected. No error is raised, because nothing waits
-            for the device.
+            signed transform has the same result if every voxel is selected. No error is raised, because the host does
+            not wait for the device.
         out : (distance, site), optional
             Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape. Without sites, the
             second one is None.

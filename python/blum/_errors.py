@@ -34,7 +34,7 @@ class Error(Exception):
 
 
 class InputWarning(UserWarning):
-    """Warning about an input that can be used, but probably means something else.
+    """Warning about an input that can be used, but may not be the intended one.
 
     `warnings.filterwarnings` silences it. `code` identifies the kind of warning.
 

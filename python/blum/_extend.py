@@ -127,8 +127,9 @@ def extend_axis(
     """Returns the sheets of a medial axis, extended from their rims to the surface: a mesh for shell elements.
 
     Use an axis at theta 100 to 120. A smaller angle adds sheets that run into edges; a larger angle leaves gaps where
-    walls meet. If a rim reaches another sheet before the surface, the extension ends at that sheet. With `join`, it
-    shares vertices and edges with the sheet, whose triangles are divided. The result has the topology of the axis.
+    walls meet. If a rim reaches another sheet before the surface, the extension ends at that sheet. With `join`, the
+    extension shares vertices and edges with that sheet, whose triangles are divided. The result has the topology of the
+    axis.
 
     Parameters
     ----------

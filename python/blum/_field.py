@@ -109,7 +109,7 @@ class Field:
 
     @property
     def distance(self) -> npt.NDArray[np.float32]:
-        """Distance, negative inside when signed: float32 (z, y, x), mesh units. Beyond a band it is +-band."""
+        """Distance, negative inside when signed: float32 (z, y, x), mesh units. Outside a band, it is +-band."""
         return self._distance
 
     @property
@@ -174,7 +174,7 @@ class Field:
 
     @property
     def device_reason(self) -> str:
-        """Reason for the CPU, one sentence, if `device="auto"` was requested. Otherwise empty."""
+        """Reason why the CPU was used, one sentence, if `device="auto"` was requested. Otherwise empty."""
         return self._device_reason
 
     @property
@@ -238,8 +238,8 @@ class Field:
     def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
         """Returns the surface at which the distance equals a level. Its triangles face larger values.
 
-        In edges and corners of the surface, vertices are off by up to half a cell's diagonal. An `InputWarning` is
-        issued if the surface leaves the grid, or if the shape is only one node thick.
+        At edges and corners of the surface, vertices deviate from it by up to half the diagonal of a grid cell. An
+        `InputWarning` is issued if the surface leaves the grid, or if the shape is only one node thick.
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ class Field:
     def to_pyvista(self) -> Any:
         """Returns a pyvista.ImageData with the point data `distance` and `site`; without PyVista, a dict of arrays.
 
-        If the grid has another direction than the axes, the result is a pyvista.StructuredGrid, which needs 24 more
+        If the grid is not aligned with the coordinate axes, the result is a pyvista.StructuredGrid, which needs 24 more
         bytes per node. The reason is that several filters ignore the direction of ImageData, for example VTK's
         vtkContourFilter and PyVista's `contour`.
 
@@ -402,7 +402,7 @@ def distance_field(
     objects : (n,) of integers, optional
         The object of each vertex, for ``order=2, second="other-object"``. Default: the connected parts of the mesh.
     threads : int
-        0: all cores. Results do not depend on it.
+        0: all cores. Results do not depend on the number of threads.
     device : "cpu", "auto", "cuda" or "cuda:K"
         Device that computes distances. "auto" uses the first CUDA device if that works, otherwise the CPU.
     progress : bool or function

@@ -238,8 +238,8 @@ def _of_simpleitk(image: Any) -> Image:
 def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any = None) -> Image:
     """Returns an array [z, y, x], a path, an Image or an image of SimpleITK as an Image.
 
-    All functions of images call this. Voxels of SimpleITK are copied; C-contiguous arrays are not. The coordinates are
-    those of SimpleITK, and :attr:`Image.space` is "left-posterior-superior".
+    All functions of images call this. Voxels of SimpleITK are copied; C-contiguous arrays are not. An image of
+    SimpleITK keeps its coordinates, and its :attr:`Image.space` is "left-posterior-superior".
 
     Parameters
     ----------

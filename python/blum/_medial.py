@@ -66,7 +66,7 @@ class MedialAxis(Rebuilt):
 
     @cached_property
     def report(self) -> MedialAxisReport:
-        """Rule of the solid, facts of its bodies, and whether the axis has its topology."""
+        """Rule of the solid, facts of its bodies, and whether the axis has the topology of the solid."""
         found: MedialAxisReport = self._core.report
         return found
 
@@ -115,9 +115,9 @@ class MedialAxis(Rebuilt):
 
         Up to four forms are tried. The first has fitted borders and few vertices. The second has all vertices. The
         third has few vertices, with borders at the cells of the grid. The fourth has all vertices of these cells. If no
-        form is certified, all are tried again on a grid that is shifted by part of a voxel. A warning names the checks
-        that failed. The mesh or image must not have changed since the call of :func:`medial_axis`. With another
-        `least_theta`, the ends of sheets may differ by up to a voxel.
+        form is certified, all four forms are tried again on a grid that is shifted by part of a voxel. A warning names
+        the checks that failed. The mesh or image must not have changed since the call of :func:`medial_axis`. A
+        different `least_theta` may move the ends of sheets by up to a voxel.
 
         Parameters
         ----------

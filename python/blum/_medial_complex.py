@@ -254,7 +254,7 @@ class MedialComplex(MedialColumns):
         """Returns the same axis with fewer vertices and triangles, as `blum medial` writes it.
 
         Sheets, seams, rims and curves move by at most the tolerance. Radii are interpolated linearly between vertices,
-        and also change by at most the tolerance. :attr:`deviation` contains the bound that holds. Remaining vertices
+        and also change by at most the tolerance. :attr:`deviation` contains the resulting bound. Remaining vertices
         keep their positions and attributes. The topology and the connections of sheets, seams and curves stay the same.
 
         Parameters
@@ -294,9 +294,9 @@ class MedialComplex(MedialColumns):
     ) -> MedialComplex:
         """Returns this axis with the patches on both sides of each triangle, as columns `patch_a` and `patch_b`.
 
-        The numbers are those of :meth:`VoronoiComplex.patches` for the same mesh and arguments, the smaller one first.
-        Inside a patch, both are equal. The column `patch_sheet` contains the sheets of pairs of patches, and -1 inside
-        a patch. `graph(of_patches=True)` then has these sheets.
+        Patches are numbered as by :meth:`VoronoiComplex.patches` for the same mesh and arguments. `patch_a` is the
+        smaller number; inside a patch, both numbers are equal. The column `patch_sheet` contains the number of the
+        sheet between the two patches, or -1 inside a patch. `graph(of_patches=True)` returns the graph of these sheets.
 
         Parameters
         ----------
@@ -442,8 +442,8 @@ class MedialComplex(MedialColumns):
         """Returns a pyvista.PolyData of triangles and edges. Without PyVista, returns a dict of arrays.
 
         The result has all columns of vertices, and the angles, roles and sheets of its cells (edges and triangles).
-        Cell data list the edges before the triangles, as PolyData does. `sheet` and `role` are -1 for cells without
-        one.
+        Cell data list the edges before the triangles, as PolyData does. `sheet` and `role` are -1 for cells without a
+        sheet or role.
 
         Examples
         --------
@@ -597,7 +597,7 @@ def certify(
     threads, progress
         As for :func:`distance_field`.
     **options
-        A check without a given option runs if the axis has the attribute that the check needs.
+        By default, a check runs if the axis has the attribute that this check needs.
 
     :class:`AxisVerifier` reads the shape once for several axes.
 

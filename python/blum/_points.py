@@ -204,8 +204,8 @@ def sample_near(
 ) -> NearSamples:
     """Returns random points near a surface with their exact signed distances, for example to train networks.
 
-    The points near the surface come first, then the points that are uniform in a box (`in_box`). This box is the mesh's
-    box, with sides multiplied by 1.1 about its centre.
+    The points near the surface come first, then the points that are uniformly distributed in a box (`in_box`). This box
+    is the mesh's box, with sides multiplied by 1.1 about its centre.
 
     Parameters
     ----------

@@ -113,11 +113,11 @@ def first_contact(
     progress: Progress = False,
     **options: Unpack[ImpactOptions],
 ) -> FirstContact | None:
-    """Returns the first contact of two moving meshes, or None if they do not meet. With one mesh, that with itself.
+    """Returns the first contact of two moving meshes, or of one mesh with itself. None if nothing meets.
 
-    It is the first of all pairs of features that meet, by time. The search for it alone is much faster than
-    :func:`continuous_collisions` if many pairs meet. Vertices move along straight lines. :class:`ProximityScene` finds
-    the first contact of several meshes.
+    The first contact is the pair of features with the smallest time of contact. If many pairs meet, this search is much
+    faster than :func:`continuous_collisions`. Vertices move along straight lines. :class:`ProximityScene` finds the
+    first contact of several meshes.
 
     Parameters
     ----------
@@ -126,7 +126,8 @@ def first_contact(
     end : (n, 3) array, or mesh
         The vertices at time 1, or the mesh at time 1 with the same triangles. C-contiguous float64 is not copied.
     other, other_end
-        The same for the other mesh. Without `other_end`, it rests. Contacts of a mesh with itself then do not count.
+        The other mesh at time 0 and at time 1. Without `other_end`, it rests. With `other`, contacts of a mesh with
+        itself are ignored.
     threads, progress
         As for :func:`distance_field`.
     **options

@@ -48,8 +48,9 @@ class ProximityScene:
     """Meshes that move, deform and change, with queries of proximity among them. Exact for the given coordinates.
 
     A scene keeps copies of its meshes. Results do not depend on the number of threads. After updates, results equal
-    those of a new scene. If several pairs are equally far apart, the smallest one is returned: by (object, primitive)
-    of its first primitive, then of its second. Threads that share a scene wait for each other.
+    those of a new scene. Among pairs that are equally far apart, the first one is returned. Pairs are ordered by
+    (object, primitive) of the first primitive, then of the second primitive. Threads that share a scene wait for each
+    other.
 
     Parameters
     ----------
@@ -139,7 +140,7 @@ class ProximityScene:
         return added
 
     def remove(self, index: Integer) -> None:
-        """Removes an object. The others keep their numbers.
+        """Removes an object. The other objects keep their numbers.
 
         Examples
         --------
@@ -188,9 +189,8 @@ class ProximityScene:
         vertices : (n, 3) array, optional
             New positions of all vertices, before the transform.
         transform : (4, 4) or (3, 4) array, or a pair (rotation (3, 3), translation (3,)), optional
-            Pose of the object, applied to the positions of its vertices. It is absolute, not relative to the last pose.
-            It must be rigid to within 1e-9, so it needs double precision. :func:`closest_rotation` converts less
-            precise rotations.
+            Absolute pose of the object, applied to the positions of its vertices. It must be rigid to within 1e-9, so
+            it needs double precision. :func:`closest_rotation` converts less precise rotations.
         mesh : mesh, optional
             Another mesh for the object. Its transform and comparisons stay the same. Excludes `vertices`.
         threads, progress
@@ -326,9 +326,9 @@ class ProximityScene:
     ) -> bool | BoolArray:
         """Returns True if two objects meet, whatever their layers. The search stops at the first pair of primitives.
 
-        Only surfaces count: a solid inside another one does not meet it. If `a` and `b` are the same object, returns
-        True if :meth:`collisions` would find a pair within it. Without `a` and `b`, returns True if any compared pair
-        of objects meets.
+        Only surfaces are compared: a solid inside another solid meets it only if their surfaces meet. If `a` and `b`
+        are the same object, returns True if :meth:`collisions` would find a pair within it. Without `a` and `b`,
+        returns True if any compared pair of objects meets.
 
         Parameters
         ----------
@@ -512,9 +512,9 @@ class ProximityScene:
     ) -> float:
         """Returns the signed distance of two solids, mesh units.
 
-        It is their distance if they are apart, 0 if they touch, and minus the largest depth if they overlap. The depth
-        is that of :meth:`penetration`: how far points of one surface lie in the other solid. It is not the shortest
-        separating translation that GJK with EPA computes for convex shapes.
+        If the solids are apart, the result is their distance. If they touch, it is 0. If they overlap, it is minus the
+        largest depth. The depth of :meth:`penetration` measures how far points of one surface lie in the other solid.
+        It differs from the length of the shortest separating translation (GJK with EPA).
 
         Parameters
         ----------
@@ -647,9 +647,9 @@ class ProximityScene:
     ) -> FirstContact | None:
         """Returns the first contact of objects that move, or None if nothing meets.
 
-        It is the first of all pairs that :meth:`continuous` returns, by time. The search for it alone is much faster if
-        many pairs meet. Among pairs with the same time, it is the first by objects, then by kind, then by vertex and
-        face, or by the ends of the edges. Kinds are ordered: ``vertex_face``, ``face_vertex``, ``edge_edge``.
+        The first contact is the pair with the smallest time among those that :meth:`continuous` returns. If many pairs
+        meet, this search is much faster. Pairs with the same time are ordered by objects, then by kind, then by vertex
+        and face, or by the ends of the edges. The order of kinds is ``vertex_face``, ``face_vertex``, ``edge_edge``.
 
         Parameters
         ----------

@@ -196,7 +196,7 @@ class Solid(Rebuilt):
 
     @property
     def problem(self) -> str:
-        """Reason why the mesh does not bound bodies that are apart, with advice. Empty if it bounds such bodies."""
+        """Reason why the mesh does not bound separate bodies, with advice. Empty if it bounds separate bodies."""
         return self._core.problem
 
     @property

@@ -129,7 +129,7 @@ class SurfaceMap:
         Parameters
         ----------
         path : path
-            An existing file is replaced only by a complete one.
+            An existing file is replaced only by a complete file.
         units : str
             Units of the mesh, for example "mm", for the bar and the metadata.
         range : (float, float), optional
@@ -510,7 +510,7 @@ def thickness(
 
     - `ball`: diameter of the largest ball that touches the surface at the point from inside. The ball contains no point
       of a triangle whose normal differs from that of the point's triangle by `separation` or more. Triangles whose
-      normals differ by less count as one smooth surface.
+      normals differ by less are treated as one smooth surface.
 
     Parameters
     ----------

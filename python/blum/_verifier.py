@@ -67,7 +67,7 @@ class AxisVerifier:
         label, threshold, grid, threads, progress
             As for :func:`certify`.
         **options
-            A check without a given option runs if the axis has the attribute that the check needs.
+            By default, a check runs if the axis has the attribute that this check needs.
 
         Examples
         --------

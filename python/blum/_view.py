@@ -65,7 +65,7 @@ def view(*things: Viewable, output: PathLike | None = None, show: bool | None = 
     ------
     InvalidOption, TypeError, KeyboardInterrupt
     FileError
-        Also if one of several files cannot be read. The page then shows the others, and lists that file.
+        Also if one of several files cannot be read. The page then shows the other files, and lists the unreadable file.
 
     Examples
     --------

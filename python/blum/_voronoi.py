@@ -31,7 +31,7 @@ _CoreComplex = _core.Complex
 
 
 class VoronoiComplex(Complex):
-    """Walls of a Voronoi diagram inside a mesh, and its surface, as triangles; the result of :func:`voronoi_complex`.
+    """Walls of a Voronoi diagram and the surface of its mesh, as triangles; the result of :func:`voronoi_complex`.
 
     Examples
     --------
@@ -112,7 +112,7 @@ class VoronoiComplex(Complex):
         return ShortList(_core.voronoi_regions(self._core))
 
     def patches(self, patch_angle: Real = 30.0, *, patch_fit: Real | None = None) -> list[VoronoiPatch]:
-        """Returns the patches of the sites: each is a smooth part of the surface, whose sites may count as one.
+        """Returns the patches of the sites: smooth parts of the surface, each of which can be treated as one site.
 
         Each has `kind` ("face", "edge" or "vertex") and `sites`. A patch of faces contains the reflex edges and
         vertices inside it. Reflex edges between patches form patches of their own.
@@ -141,9 +141,10 @@ class VoronoiComplex(Complex):
     def with_patches(self, patch_angle: Real = 30.0, *, patch_fit: Real | None = None) -> VoronoiComplex:
         """Returns this complex with the patches on both sides of each triangle, as columns `patch_a` and `patch_b`.
 
-        The numbers are those of :meth:`patches` for the same arguments, the smaller one first. `patch_a` is -1 on the
-        surface. Inside a patch, both are equal. The axis from :meth:`medial_axis` keeps these columns, and has sheets
-        of patches as a column `patch_sheet`. Its `graph(of_patches=True)` then has these sheets.
+        Patches are numbered as by :meth:`patches` for the same arguments. The smaller number comes first. `patch_a` is
+        -1 on the surface. Inside a patch, both numbers are equal. The axis from :meth:`medial_axis` keeps these
+        columns. Its column `patch_sheet` contains the sheet between the two patches. `graph(of_patches=True)` returns
+        the graph of these sheets.
 
         Examples
         --------
@@ -165,10 +166,10 @@ class VoronoiComplex(Complex):
         Parameters
         ----------
         patch_angle : float, optional
-            If given, the graph is that of the :meth:`patches`, listed in its `patches`. All numbers of sites in it are
-            then numbers of patches.
+            If given, the graph is that of the :meth:`patches`, which its member `patches` lists. All numbers of sites
+            in this graph are then numbers of patches.
         patch_fit : float, optional
-            If given, patches are those of fitted shapes, also listed in `patches`. The angle is 30 by default.
+            If given, patches are those of fitted shapes, also listed in `patches`. `patch_angle` is then 30 by default.
 
         Examples
         --------
@@ -350,8 +351,8 @@ def voronoi_complex(
     """Computes the Voronoi diagram inside a polyhedron, as a complex.
 
     Its sites are the faces, reflex edges and reflex vertices. If the report is `certified`, the homology of the complex
-    is proven to be that of the exact diagram. Triangles are used as given: faces that rounding has bent are several
-    sites.
+    is proven to be that of the exact diagram. If the solid is divided into cubes, a face that rounding has bent is
+    several sites.
 
     Parameters
     ----------
