@@ -56,8 +56,8 @@ def clean_mesh(
     Parameters
     ----------
     mesh : mesh or Solid
-        A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. Its triangles may face any way, and may
-        cross. If triangles cross, the result is near the surface without the crossings.
+        A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. Triangles may face any way, and may cross. If
+        triangles cross, the result is near the surface without the crossings.
     tolerance : float
         Guaranteed bound on the deviation, mesh units. No point of the result is further than this from the mesh, and no
         point of the mesh is further than this from the result.
@@ -115,7 +115,7 @@ def oriented_mesh(
     Parameters
     ----------
     mesh : mesh
-        As for :func:`distance_field`. It must be closed and manifold.
+        As for :func:`distance_field`. The mesh must be closed and manifold.
     weld, threads, progress
         As for :func:`distance_field`.
 

@@ -76,8 +76,8 @@ class NearPrimitives:
 class ClosestPointQuery(Rebuilt):
     """Exact closest-point queries on one mesh. Queries may run on many threads at once, but not during :meth:`refit`.
 
-    A pickle or copy holds the mesh and the options. It builds its search structure again at its first use, from the
-    arrays of the mesh, which must not have changed in place.
+    A pickle or copy holds the mesh and the options. The copy builds its search structure again at its first use, from
+    the arrays of the mesh, which must not have changed in place.
 
     Parameters
     ----------
@@ -311,7 +311,7 @@ def winding_number(
     threads: int = 0,
     progress: Progress = False,
 ) -> FloatArray:
-    """Returns the generalized winding number of a mesh at many points. It is a whole number for a closed mesh.
+    """Returns the generalized winding number of a mesh at many points. For a closed mesh, this is a whole number.
 
     :class:`WindingNumber` returns values and sides one at a time.
 

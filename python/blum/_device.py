@@ -340,8 +340,8 @@ class DeviceFieldSolver(_DeviceSolver):
             If a vertex is not finite, every distance becomes NaN. No error is raised, because the host does not wait
             for the device.
         triangles, segments, points : (m, 3), (m, 2), (m,) of int32, uint32 or int64, on the device
-            If none of the three is given, the arrays of the last call are used. Such a call skips the search for edges,
-            and does not wait for it.
+            If none of the three is given, the arrays of the last call are used. A call without new elements skips the
+            search for edges, and does not wait for it.
         out : (distance, site), optional
             Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape. Without sites, the
             second entry is None.

@@ -203,7 +203,7 @@ class Field:
     def interpolate(
         self, points: Any, *, gradient: bool = False, threads: int = 0, progress: Progress = False
     ) -> FloatArray | tuple[FloatArray, FloatArray]:
-        """Returns the distance at points of shape (..., 3), trilinear between nodes. It is NaN outside the grid.
+        """Returns the distance at points of shape (..., 3), trilinear between nodes, and NaN outside the grid.
 
         The interpolated distance is not exact. Next to edges and bisectors, errors are up to about half the diagonal of
         a grid cell. :func:`closest_points` is exact.
@@ -236,7 +236,7 @@ class Field:
         return only.reshape(shape)
 
     def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
-        """Returns the surface at which the distance equals a level. Its triangles face larger values.
+        """Returns the surface at which the distance equals a level. Triangles face larger values.
 
         At edges and corners of the surface, vertices deviate from it by up to half the diagonal of a grid cell. An
         `InputWarning` is issued if the surface leaves the grid, or if the shape is only one node thick.
@@ -412,7 +412,7 @@ def distance_field(
     Returns
     -------
     Field
-        Distances are float32. They differ from the exact distances by at most 1e-6 of the diagonal of the box around
+        Distances are float32, and differ from the exact distances by at most 1e-6 of the diagonal of the box around
         mesh and grid.
 
     Raises
@@ -457,7 +457,7 @@ class FieldSolver(Rebuilt):
     device
         As for :func:`distance_field`.
     reuse : bool
-        True: all frames are written into the same arrays, so the next frame overwrites the last one. This is faster.
+        True: all frames are written into the same arrays, which is faster. So the next frame overwrites the last one.
         False: each frame has its own arrays.
     **options
 

@@ -21,7 +21,8 @@ _RESOLUTION = 256  # Nodes along the longest side by default.
 class Grid:
     """Regular grid of nodes. Node (i, j, k) lies at ``origin + direction @ ((i, j, k) * spacing)``.
 
-    Arrays on a grid are C-ordered and indexed [z, y, x]. They have the shape ``shape``, the reverse of ``size``.
+    Arrays on a grid are C-ordered and indexed [z, y, x]. The shape of these arrays is ``shape``, the reverse of
+    ``size``.
 
     Parameters
     ----------
@@ -91,7 +92,7 @@ class Grid:
     def within(cls, bounds: Any, *, resolution: Integer | None = None, spacing: Real | None = None) -> Grid:
         """Returns a grid over a box, without padding.
 
-        If a side of the box is not a whole multiple of the spacing, the grid is longer than that side. It extends
+        If a side of the box is not a whole multiple of the spacing, the grid is longer than that side. The grid extends
         beyond the box by the same length at both ends, less than half a spacing.
 
         Parameters

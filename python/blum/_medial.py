@@ -32,9 +32,9 @@ _CoreAxis = _core.MedialAxis
 class MedialAxis(Rebuilt):
     """Medial axis of a solid for all thresholds theta of the separation angle; the result of :func:`medial_axis`.
 
-    A pickle or copy holds the shape, the options and the report. It computes the axis again at its first use, in the
-    same time as :func:`medial_axis`. The arrays of the shape must not have changed in place. :meth:`simplify` returns
-    an axis at one angle, whose pickles hold all its parts.
+    A pickle or copy holds the shape, the options and the report. The copy computes the axis again at its first use, in
+    the same time as :func:`medial_axis`. The arrays of the shape must not have changed in place. :meth:`simplify`
+    returns an axis at one angle, whose pickles hold all its parts.
 
     Examples
     --------
@@ -113,11 +113,11 @@ class MedialAxis(Rebuilt):
     ) -> MedialComplex:
         """Returns the axis at theta with a certificate that holds, as `blum medial` writes it.
 
-        Up to four forms are tried. The first has fitted borders and few vertices. The second has all vertices. The
-        third has few vertices, with borders at the cells of the grid. The fourth has all vertices of these cells. If no
-        form is certified, all four forms are tried again on a grid that is shifted by part of a voxel. A warning names
-        the checks that failed. The mesh or image must not have changed since the call of :func:`medial_axis`. A
-        different `least_theta` may move the ends of sheets by up to a voxel.
+        Up to four forms are tried. The first form has fitted borders and few vertices. The second form has all
+        vertices. The third form has few vertices, with borders at the cells of the grid. The fourth form has all
+        vertices of these cells. If no form is certified, all four forms are tried again on a grid that is shifted by
+        part of a voxel. A warning names the checks that failed. The mesh or image must not have changed since the call
+        of :func:`medial_axis`. A different `least_theta` may move the ends of sheets by up to a voxel.
 
         Parameters
         ----------

@@ -126,7 +126,7 @@ class MedialColumns(Complex):
     def sites(self) -> IntArray:
         """Sites of the mesh (:class:`Sites`), or flat indices of voxels, that contain the footprints: (n, 2).
 
-        They are a copy of two columns.
+        The array is a copy of two columns.
         """
         return _stacked(self._needed("vertices", "site_0"), self._needed("vertices", "site_1"))
 

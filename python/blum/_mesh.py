@@ -77,7 +77,7 @@ class Mesh:
         Vertices that are free points of the shape. Without triangles, segments and points, all vertices are free
         points.
 
-    Arrays must not change during a call. They may change between calls (see :class:`FieldSolver`).
+    Arrays must not change during a call, but may change between calls (see :class:`FieldSolver`).
 
     Examples
     --------

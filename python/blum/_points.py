@@ -54,8 +54,8 @@ class SignedDistances(Shown):
     def barycentric(self) -> FloatArray:
         """Weights of the triangle's corners, whose weighted mean is the closest point: (..., 3).
 
-        Weights are NaN if the closest point lies on no triangle. They are computed at the first access, from the mesh's
-        vertices at that time.
+        Weights are NaN if the closest point lies on no triangle. Weights are computed at the first access, from the
+        mesh's vertices at that time.
         """
         rows, shape = points_and_shape(self.closest, "points")
         site, triangle = (np.ascontiguousarray(ids.reshape(-1)) for ids in (self.site, self.triangle))

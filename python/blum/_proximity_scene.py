@@ -48,9 +48,8 @@ class ProximityScene:
     """Meshes that move, deform and change, with queries of proximity among them. Exact for the given coordinates.
 
     A scene keeps copies of its meshes. Results do not depend on the number of threads. After updates, results equal
-    those of a new scene. Among pairs that are equally far apart, the first one is returned. Pairs are ordered by
-    (object, primitive) of the first primitive, then of the second primitive. Threads that share a scene wait for each
-    other.
+    those of a new scene. Among equally close pairs, the first one is returned, by (object, primitive) of the first
+    primitive, then of the second primitive. Threads that share a scene wait for each other.
 
     Parameters
     ----------
@@ -192,7 +191,7 @@ class ProximityScene:
             Absolute pose of the object, applied to the positions of its vertices. It must be rigid to within 1e-9, so
             it needs double precision. :func:`closest_rotation` converts less precise rotations.
         mesh : mesh, optional
-            Another mesh for the object. Its transform and comparisons stay the same. Excludes `vertices`.
+            Another mesh for the object. Transform and comparisons stay the same. Excludes `vertices`.
         threads, progress
             As for :func:`distance_field`.
 
@@ -445,7 +444,8 @@ class ProximityScene:
     ) -> list[Penetration]:
         """Returns the connected parts of the overlap of two solids, the deepest first.
 
-        The list is empty if the solids only touch. If both are the same object, returns the overlaps of its parts.
+        The list is empty if the solids only touch. If `a` and `b` are the same object, returns the overlaps of its
+        parts.
 
         Parameters
         ----------
@@ -514,7 +514,7 @@ class ProximityScene:
 
         If the solids are apart, the result is their distance. If they touch, it is 0. If they overlap, it is minus the
         largest depth. The depth of :meth:`penetration` measures how far points of one surface lie in the other solid.
-        It differs from the length of the shortest separating translation (GJK with EPA).
+        This depth differs from the length of the shortest separating translation (GJK with EPA).
 
         Parameters
         ----------
@@ -613,8 +613,8 @@ class ProximityScene:
         ----------
         motions : dict
             The end of the motion of each moving object: vertices (n, 3) before its transform, or a transform, or
-            ``{"vertices": ..., "transform": ...}``. Both have the forms of :meth:`update`. A mesh with the same number
-            of vertices may be given for the vertices.
+            ``{"vertices": ..., "transform": ...}``. Vertices and transform have the forms of :meth:`update`. A mesh
+            with the same number of vertices may be given for the vertices.
         threads, progress
             As for :func:`distance_field`.
         **options
@@ -800,8 +800,8 @@ def collisions(
     meshes : mesh, or a list of meshes
         As for :func:`distance_field`.
     max_distance : float
-        Mesh units. If it is 0, primitives that share a vertex are returned if they have further points in common. If it
-        is above 0, primitives that share a vertex are left out.
+        Mesh units. 0: primitives that share a vertex are returned if they have further points in common. Above 0:
+        primitives that share a vertex are left out.
     compare_self : bool, optional
         True: each mesh is compared with itself. Default: True for a single mesh.
     threads, progress

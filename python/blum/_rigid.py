@@ -30,8 +30,8 @@ def closest_rotation(matrix: Any) -> FloatArray:
     Parameters
     ----------
     matrix : (3, 3), (3, 4) or (4, 4) array
-        A rotation, or a transform, of which only the rotation changes. Its columns must have length 1 and be
-        perpendicular, to within 0.1.
+        A rotation, or a transform, of which only the rotation changes. The columns of the rotation must have length 1
+        and be perpendicular, to within 0.1.
 
     Examples
     --------

@@ -129,7 +129,7 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
     outline : (n, 2) array
         A simple polygon, in either direction.
     holes : list of (k, 2) arrays
-        Simple polygons inside the outline, in either direction. They must not touch the outline or each other.
+        Simple polygons inside the outline, in either direction. Holes must not touch the outline or each other.
     thickness : float
         Mesh units.
     stacks : int

@@ -85,7 +85,7 @@ class CellularModel(Rebuilt):
 
     @property
     def passes(self) -> bool:
-        """True if every component in a cell is contractible. Then the model has the solid's homotopy type."""
+        """True if every component in a cell is contractible, so that the model has the solid's homotopy type."""
         return self.report.passes
 
     def complex(self, *, threads: int = 0, progress: Progress = False) -> Complex:
@@ -125,8 +125,8 @@ class Solid(Rebuilt):
     number is 1 or more. For other meshes, the solid is where the winding number is above 1/2. For images, the solid is
     the union of the selected voxels; voxels that touch in a corner are connected.
 
-    A pickle or copy holds the mesh or the image. It computes the solid again at its first use, from the arrays of the
-    shape, which must not have changed in place.
+    A pickle or copy holds the mesh or the image. The copy computes the solid again at its first use, from the arrays of
+    the shape, which must not have changed in place.
 
     Parameters
     ----------

@@ -65,9 +65,9 @@ __all__ = [
 class SurfaceMap:
     """Distance vector field over the surface of a mesh, as a texture.
 
-    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture; row 0 is at the top. Its value is that of
-    one point of one triangle. Between texels, lookups use the nearest texel or are bilinear. Pickles and copies hold
-    the .npz file of :meth:`write`, which is written to a temporary folder on the way.
+    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture; row 0 is at the top. The texel's value is
+    that of one point of one triangle. Between texels, lookups use the nearest texel or are bilinear. Pickles and copies
+    hold the .npz file of :meth:`write`, which is first written to a temporary folder.
 
     Examples
     --------

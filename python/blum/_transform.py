@@ -50,7 +50,7 @@ def distance_transform(
     Returns
     -------
     Field
-        `Field.site` holds flat indices of the closest voxels. It is None with `sites=False`.
+        `Field.site` holds flat indices of the closest voxels. With `sites=False`, `site` is None.
 
     Examples
     --------

@@ -20,7 +20,7 @@ def least_translation(
     """Returns bounds on the shortest translation of solid ``a`` that separates it from solid ``b``.
 
     This length is also called penetration depth, for example by EPA. Both bounds are equal, except for rounding, if
-    both solids are convex. Both are 0 if the solids are apart or touch.
+    both solids are convex. Both bounds are 0 if the solids are apart or touch.
 
     Parameters
     ----------

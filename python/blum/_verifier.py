@@ -27,8 +27,8 @@ class AxisVerifier:
     Parameters
     ----------
     shape, triangles
-        The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`. Its arrays must not
-        change while the verifier is used.
+        The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`. The arrays of the
+        shape must not change while the verifier is used.
     weld : float, optional
         Meshes: as for :func:`certify`.
 

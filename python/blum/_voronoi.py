@@ -84,7 +84,8 @@ class VoronoiComplex(Complex):
     def sites(self) -> list[VoronoiSite]:
         """Returns the sites: the faces, edges and vertices of the mesh to which `triangle_sites` and the regions refer.
 
-        Each has `kind` ("face", "edge" or "vertex"), `triangles` (of a face) and `vertices` (of an edge or a vertex).
+        Each site has `kind` ("face", "edge" or "vertex"), `triangles` (of a face) and `vertices` (of an edge or a
+        vertex).
 
         Examples
         --------
@@ -114,7 +115,7 @@ class VoronoiComplex(Complex):
     def patches(self, patch_angle: Real = 30.0, *, patch_fit: Real | None = None) -> list[VoronoiPatch]:
         """Returns the patches of the sites: smooth parts of the surface, each of which can be treated as one site.
 
-        Each has `kind` ("face", "edge" or "vertex") and `sites`. A patch of faces contains the reflex edges and
+        Each patch has `kind` ("face", "edge" or "vertex") and `sites`. A patch of faces contains the reflex edges and
         vertices inside it. Reflex edges between patches form patches of their own.
 
         Parameters
