@@ -382,7 +382,8 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
         return;
       }
     }
-    const std::string_view way = places == TracedPlaces::merged ? "close places joined: " : "close places apart: ";
+    const std::string_view way =
+        places == TracedPlaces::merged ? "close junctions merged: " : "close junctions separate: ";
     problems += (problems.empty() ? "" : "; ") + std::string(way) + problem;
     if (left == 0) break;
   }

@@ -174,7 +174,7 @@ std::string certificate_text(VoronoiPart part, bool is_exact) {
 std::string proof_text(const VoronoiReport& report) {
   return count_text(report.proven_junctions) + " of " + plural(report.junctions, "junction", "junctions") + ", " +
          count_text(report.proven_seams) + " of " + plural(report.seams, "seam", "seams") +
-         (report.open.empty() ? "" : "; open places: see \"open\" in the JSON summary");
+         (report.open.empty() ? "" : "; the list \"open\" in the JSON summary contains the others");
 }
 
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, double size, TextTable& table) {
