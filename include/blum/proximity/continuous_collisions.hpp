@@ -20,21 +20,23 @@ namespace blum {
 struct VertexFaceCollision {
   std::uint32_t vertex = 0;
   TriangleId face;
-  double time = 0;  ///< Time of impact, as from vertex_face_impact().
+  double time = 0;  ///< Time of impact, as returned by vertex_face_impact().
 };
 
 /// Two edges that meet.
 struct EdgeEdgeCollision {
-  Segment first{};  ///< Ends of the edge, the smaller index first. `first` is the smaller edge.
+  Segment first{};  ///< Vertices of the edge, the smaller index first. `first` is less than `second` in lexicographic
+                    ///< order.
   Segment second{};
-  double time = 0;  ///< Time of impact, as from edge_edge_impact().
+  double time = 0;  ///< Time of impact, as returned by edge_edge_impact().
 };
 
 struct ContinuousCollisions {
   std::vector<VertexFaceCollision> vertex_face;  ///< By ascending (vertex, face).
   std::vector<EdgeEdgeCollision> edge_edge;      ///< By ascending (first, second).
   std::size_t box_pairs = 0;  ///< Pairs of a vertex and a face, or of two edges, whose moving boxes touch.
-  /// Number of the pairs in `box_pairs` that were tested exactly, because no examined direction separates them.
+  /// Number of pairs in `box_pairs` that needed an exact test, because no examined direction separates the two
+  /// features.
   std::size_t exact_tests = 0;
   std::vector<PhaseTime> phases;
 
@@ -42,14 +44,14 @@ struct ContinuousCollisions {
   [[nodiscard]] std::optional<double> earliest() const;
 };
 
-/// Returns all colliding pairs of a vertex and a triangle, and of two edges, of a moving mesh. Vertices move along
-/// straight lines from time 0 to time 1. For each pair, the result contains the time of the first contact.
+/// Returns all collisions within a moving mesh: pairs of a vertex and a triangle, and pairs of two edges. Vertices move
+/// along straight lines from time 0 to time 1. For each pair, the result contains the time of the first contact.
 ///
 /// The set of pairs is exact for the given coordinates: see vertex_face_impact(). Pairs that share a vertex are left
 /// out. Vertices that coincide both at the start and at the end count as one vertex, so a mesh need not be welded. The
-/// result lists such vertices under one index: the smallest of their indices that a primitive of the mesh uses. Edges
-/// are the sides of triangles, and segments; each edge counts once. Vertices are those of triangles, segments and
-/// points. Triangles without area count, too.
+/// result lists coinciding vertices under one index: the smallest of their indices that a primitive of the mesh uses.
+/// Edges are all segments and all sides of triangles; a shared edge is tested once. Vertices are those of triangles,
+/// segments and points. Triangles without area are also tested.
 ///
 /// @param mesh  at time 0; must pass validate(mesh).
 /// @param end   positions of all vertices of the mesh at time 1. Coordinates of vertices that primitives use must be
@@ -63,11 +65,11 @@ struct ContinuousCollisions {
                                                          const ImpactOptions& options = {},
                                                          const Context& context = {});
 
-/// Returns a warning if pairs meet at the start of a motion, or an empty list. Their times are 0, whether they then
-/// move apart or deeper into each other.
+/// Returns a warning if pairs meet at the start of a motion, otherwise an empty list. The time of such a pair is 0,
+/// even if the two features move apart immediately.
 /// @param pairs  number of pairs with the time 0.
 [[nodiscard]] std::vector<Warning> start_warnings(std::size_t pairs);
-/// Returns the same for the pairs of a result.
+/// Returns the warning for all pairs of a result that have the time 0, or an empty list.
 [[nodiscard]] std::vector<Warning> start_warnings(const ContinuousCollisions& found);
 
 }  // namespace blum

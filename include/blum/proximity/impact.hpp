@@ -25,8 +25,8 @@ struct FourMovingPoints {
 struct ImpactOptions {
   /// Largest time by which a reported impact may precede the true one, as a fraction of the motion: 2^-40 to 1.
   double tolerance = 1e-6;
-  /// A vertex and a face, or two edges, meet as soon as their distance is at most this: 0 to 1e150, mesh units. At 0,
-  /// they meet if they have a point in common.
+  /// Distance at or below which a vertex and a face, or two edges, meet: 0 to 1e150, mesh units. With 0, they meet only
+  /// if they have a point in common.
   double min_separation = 0;
 };
 
@@ -42,8 +42,8 @@ struct Description<ImpactOptions> {
   };
 };
 
-/// Checks options.
-/// @throws InvalidOption if one is out of range.
+/// Checks the options.
+/// @throws InvalidOption if an option is out of range.
 void check(const ImpactOptions& options);
 
 /// Returns the first time at which a moving vertex lies in a moving triangle, its border included.
@@ -55,21 +55,22 @@ void check(const ImpactOptions& options);
 /// reported contact is false. Triangles may lose their area and turn over. The four points may stay in one plane, or
 /// not move at all.
 /// @param points  the vertex, then the corners of the triangle.
-/// @return        nullopt if vertex and triangle never meet. Otherwise the time of the first contact, 0 to 1. It is
-///                rounded down to a multiple of the largest power of two that is at most options.tolerance.
+/// @return        nullopt if vertex and triangle never meet. Otherwise the time of the first contact, 0 to 1. The time
+///                is rounded down to a multiple of the largest power of two that is at most options.tolerance.
 /// @throws InvalidMesh if a coordinate is not finite; InvalidOption.
-/// Cost: 0.1 microseconds if simple bounds separate vertex and triangle, 1 microsecond for most contacts. If both only
-/// shift, 0.2 to 1 microsecond. Otherwise about 10 microseconds if doubles do not decide.
+/// Cost: 0.1 microseconds if simple bounds separate vertex and triangle, and 1 microsecond for most contacts. If vertex
+/// and triangle only translate, the cost is 0.2 to 1 microsecond. For other motions that need more than double
+/// precision, the cost is about 10 microseconds.
 /// Method: docs/theory/proximity.md.
 [[nodiscard]] std::optional<double> vertex_face_impact(const FourMovingPoints& points,
                                                        const ImpactOptions& options = {});
 
 /// Returns the first time at which two moving edges, including their ends, have a point in common. For options, errors
 /// and cost see vertex_face_impact().
-/// @param points  the ends of one edge, then those of the other.
+/// @param points  the two ends of the first edge, then the two ends of the second edge.
 [[nodiscard]] std::optional<double> edge_edge_impact(const FourMovingPoints& points, const ImpactOptions& options = {});
 
-/// Return the times of impact of many pairs of a vertex and a face, or of two edges, computed with threads.
+/// Return the times of impact of many pairs: of a vertex and a face, or of two edges. Several threads share the work.
 /// @throws Cancelled; otherwise as vertex_face_impact().
 [[nodiscard]] std::vector<std::optional<double>> vertex_face_impacts(std::span<const FourMovingPoints> points,
                                                                      const ImpactOptions& options = {},

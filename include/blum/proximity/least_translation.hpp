@@ -13,12 +13,13 @@
 namespace blum {
 
 struct TranslationOptions {
-  /// Largest gap between both bounds for convex solids, as a fraction of the upper bound: 0 to 1. With 0, the gap is as
-  /// small as rounding permits.
+  /// For convex solids: largest difference between the upper and the lower bound, as a fraction of the upper bound: 0
+  /// to 1. With 0, the difference is as small as rounding permits.
   double translation_tolerance = 0;
-  /// Largest number of planes that are tried for convex solids, at least 1. When it is reached, the gap stays wider.
+  /// For convex solids: largest number of planes that the search tries, at least 1. If the search reaches this number,
+  /// the bounds may differ by more than `translation_tolerance`.
   std::size_t max_planes = 50'000;
-  /// Largest number of translations that are tried for other solids.
+  /// For solids that are not convex: largest number of translations that the search tries.
   std::size_t max_tests = 1'500;
 };
 
@@ -37,22 +38,22 @@ struct Description<TranslationOptions> {
   };
 };
 
-/// Checks options.
-/// @throws InvalidOption if one is out of range.
+/// Checks the options.
+/// @throws InvalidOption if an option is out of range.
 void check(const TranslationOptions& options);
 
 /// Bounds on the length of the shortest translation that separates two solids, so that they touch or are apart. Other
 /// names of this length are penetration depth and global penetration depth. The local depth is Penetration::depth.
 struct LeastTranslation {
-  /// No shorter translation separates the solids. Rounding is included, and may reduce the bound by 1e-14 times the
-  /// extent of both solids. It is 0 if the solids are apart or touch.
+  /// Lower bound on the length, mesh units: no shorter translation separates the solids. The bound allows for rounding,
+  /// which may lower it by 1e-14 times the extent of both solids. The bound is 0 if the solids are apart or touch.
   double lower = 0;
   double upper = 0;  ///< Length of `translation`, mesh units.
-  /// Translation of the first solid. Afterwards, the interiors of both solids have no common point, except for
-  /// rounding.
+  /// Translation that separates the first solid from the second. After it, the interiors of both solids are disjoint,
+  /// except for rounding.
   Vec3d translation;
-  /// True if both solids are convex, except for rounding. Both bounds are then equal, except for rounding, unless an
-  /// option ended the search early. Otherwise, the true length may lie anywhere between the bounds.
+  /// True if both solids are convex, except for rounding. If true, the bounds differ only by rounding, unless an option
+  /// ended the search early. If false, the true length may lie anywhere between the bounds.
   bool are_convex = false;
 };
 
@@ -74,8 +75,8 @@ struct Description<LeastTranslation> {
 /// @param first, second  closed meshes that face outwards, as for ProximityScene::penetration().
 /// @return               the same for any number of threads.
 /// @throws InvalidMesh as ProximityScene::penetration(); InvalidOption; Cancelled.
-/// Cost: for convex solids, about a microsecond per plane and 2 ns per plane and vertex. For other solids, that of
-/// ProximityScene::penetration(), and of up to `max_tests` tests for a common point.
+/// Cost: for convex solids, about a microsecond per plane and 2 ns per plane and vertex. For other solids, the cost is
+/// that of ProximityScene::penetration() and of up to `max_tests` tests for a common point.
 /// Method: docs/theory/proximity.md.
 [[nodiscard]] LeastTranslation least_translation(const MeshView& first, const MeshView& second,
                                                  const TranslationOptions& options = {}, const Context& context = {});

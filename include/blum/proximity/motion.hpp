@@ -19,12 +19,13 @@ namespace blum {
 using ObjectId = Id<struct ObjectTag>;
 
 /// Motion of an object from its present position. Each vertex moves along a straight line, at a constant speed, from
-/// time 0 to time 1. If the object rotates, its vertices move along chords instead of arcs, with exact positions at
-/// both ends.
+/// time 0 to time 1. If the object rotates, each vertex moves along the chord of its arc. The positions at times 0 and
+/// 1 are exact.
 struct ObjectMotion {
   ObjectId object;
-  std::span<const Vec3d> vertices = {};      ///< Positions at time 1, before the transform. If empty, vertices stay.
-  std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, the transform stays.
+  /// Positions of the vertices at time 1, before the transform is applied. If empty, the vertices do not change.
+  std::span<const Vec3d> vertices = {};
+  std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, it does not change.
 };
 
 /// Collisions of two objects, or of one object with itself.
@@ -32,7 +33,7 @@ struct ObjectCollisions {
   ObjectId first;
   ObjectId second;
   std::vector<VertexFaceCollision> vertex_face;  ///< Vertices of the first object, faces of the second object.
-  /// Vertices of the second object, faces of the first; empty if both are one object.
+  /// Vertices of the second object, faces of the first object; empty for collisions of an object with itself.
   std::vector<VertexFaceCollision> face_vertex;
   std::vector<EdgeEdgeCollision> edge_edge;  ///< Edges of the first object, edges of the second object.
 
@@ -43,7 +44,8 @@ struct ObjectCollisions {
 struct SceneCollisions {
   std::vector<ObjectCollisions> objects;  ///< Pairs of objects that collide, by ascending (first, second).
   std::size_t box_pairs = 0;              ///< Pairs of a vertex and a face, or of two edges, whose moving boxes touch.
-  /// Number of the pairs in `box_pairs` that were tested exactly, because no examined direction separates them.
+  /// Number of pairs in `box_pairs` that needed an exact test, because no examined direction separates the two
+  /// features.
   std::size_t exact_tests = 0;
   std::vector<PhaseTime> phases;
 

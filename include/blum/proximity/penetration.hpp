@@ -17,8 +17,8 @@ namespace blum {
 
 struct PenetrationOptions {
   /// Largest excess of the true depth over the reported depth, as a fraction of the reported depth: 1e-6 to 1. The
-  /// search ends after 200,000 points; then Penetration::depth_bound may be larger. This happens if a common part is
-  /// bounded by curved surfaces and is much wider than deep.
+  /// search ends after 200,000 points, even if Penetration::depth_bound still exceeds this limit. This may happen if a
+  /// common part is bounded by curved surfaces and is much wider than deep.
   double depth_tolerance = 0.01;
 };
 
@@ -32,17 +32,18 @@ struct Description<PenetrationOptions> {
   };
 };
 
-/// Checks options.
-/// @throws InvalidOption if one is out of range.
+/// Checks the options.
+/// @throws InvalidOption if an option is out of range.
 void check(const PenetrationOptions& options);
 
 /// Connected part of the overlap of two solids.
 ///
-/// Its border consists of two sides. Each side is the part of one solid's surface that lies in the other solid. The
-/// depth is the largest distance of a point of one side from the other side (Sud 2006, ch. 4: local penetration depth).
-/// It is not the length of the shortest translation that separates the solids. A translation by the depth brings the
-/// deepest point to the other side, but other points may remain in the other solid. Surfaces that do not bound this
-/// part do not count. If surfaces coincide, the depth is its limit as the displacement of one solid tends to zero.
+/// The border of the part consists of two sides. Each side is the region of one solid's surface that lies in the other
+/// solid. The depth is the largest distance of a point of one side from the other side (Sud 2006, ch. 4: local
+/// penetration depth). The depth differs from the length of the shortest translation that separates the solids
+/// (LeastTranslation). A translation by the depth brings the deepest point to the other side, but other points may
+/// remain in the other solid. Only surfaces that bound this part affect the depth. If parts of both surfaces coincide,
+/// the depth is the limit for a displacement of one solid that tends to zero.
 struct Penetration {
   ObjectId first_object;
   ObjectId second_object;
@@ -53,22 +54,22 @@ struct Penetration {
   Vec3d deep_point;            ///< Deepest point: a point of one object's surface in the other object.
   Vec3d surface_point;         ///< Point of the other object's surface that is closest to `deep_point`.
   bool is_first_deep = false;  ///< True if `deep_point` lies on the first object's surface, false if on the second's.
-  /// Triangle that contains `deep_point`, in the object whose surface that point lies on.
+  /// Triangle that contains `deep_point`: its index in the object whose surface contains this point.
   std::uint32_t deep_triangle = 0;
   std::uint32_t surface_triangle = 0;  ///< Triangle of the other object that contains `surface_point`.
-  /// Area of the side that belongs to the first object, then of the other side, square mesh units. If an object is
-  /// compared with itself, the first entry is the sum of both areas.
+  /// Areas of the two sides, square mesh units: of the side on the first object's surface, then of the side on the
+  /// second object's surface. If an object is compared with itself, the first entry is the sum of both areas.
   std::array<double, 2> area{};
   double volume = 0;  ///< Volume of the common part, cubic mesh units.
-  /// Curves in which the surfaces cross. A curve is closed and ends with its first point, unless it meets other curves.
-  /// In that case, it ends at the points where they meet.
+  /// Curves along which the surfaces cross, as polylines. A closed curve ends with its first point. A curve that meets
+  /// other curves runs from one meeting point to the next.
   std::vector<std::vector<Vec3d>> curves;
 };
 
 /// Connected parts of the overlaps of pairs of solids. For each pair of objects, the deepest part is first.
 struct Penetrations {
   std::vector<Penetration> parts;
-  std::size_t object_pairs = 0;  ///< Compared pairs. An object compared with itself counts as a pair.
+  std::size_t object_pairs = 0;  ///< Number of compared pairs, including objects compared with themselves.
   std::vector<PhaseTime> phases;
 };
 

@@ -28,13 +28,14 @@
 namespace blum {
 
 /// Name of an object in messages, and selection of the objects that it is compared with. Two objects are compared if
-/// each of them is in a layer that the other's `meets` contains, and the pair is not excluded
-/// (ProximityScene::exclude).
+/// the `layers` of each object have a bit in common with the `meets` of the other object. Pairs that
+/// ProximityScene::exclude() excludes are not compared.
 struct ObjectOptions {
   std::uint32_t layers = 1;          ///< Layers that contain the object, one bit for each layer.
   std::uint32_t meets = 0xffffffff;  ///< Layers whose objects this object is compared with, one bit for each layer.
   bool self = false;                 ///< True if the object is compared with itself.
-  /// Name in messages, for example of its file. If empty, messages contain its number: "object 3".
+  /// Name of the object in messages, for example its file name. If empty, messages contain the object's number: "object
+  /// 3".
   std::string name = {};
 };
 
@@ -55,7 +56,7 @@ struct Description<ObjectOptions> {
 enum class Culling : std::uint8_t {
   automatic,  ///< The method that is faster in all known cases: `bvh`.
   bvh,        ///< Hierarchy of oriented boxes over each object.
-  voronoi     ///< Second-order Voronoi diagrams on the cells of a grid that primitives touch (Sud 2006, 4.3).
+  voronoi     ///< Second-order Voronoi diagrams on a grid, in the cells that primitives touch (Sud 2006, 4.3).
 };
 
 template <>
@@ -82,12 +83,12 @@ struct Description<SceneOptions> {
   };
 };
 
-/// Checks options.
-/// @throws InvalidOption if one is out of range.
+/// Checks the options.
+/// @throws InvalidOption if an option is out of range.
 void check(const SceneOptions& options);
 
 /// Checks that a scene accepts a transform.
-/// @throws InvalidOption if the transform is not rigid to 1e-9, is a reflection, or moves beyond 1e70.
+/// @throws InvalidOption if the transform is not rigid to 1e-9, is a reflection, or has a translation beyond 1e70.
 void check(const RigidTransform& place);
 
 /// Two primitives and their closest points. Primitives of an object are numbered from 0: first the triangles of its
@@ -97,18 +98,19 @@ struct PrimitivePair {
   ObjectId second_object;
   std::uint32_t first = 0;  ///< Number of the primitive of the first object.
   std::uint32_t second = 0;
-  TriangleDistance between;  ///< Segments count as triangles with corners a, b, b, and points as triangles a, a, a.
+  TriangleDistance between;  ///< Segments are treated as triangles a, b, b, and points as triangles a, a, a.
 };
 
 /// Effort of a query.
 struct ProximityReport {
   Culling culling = Culling::bvh;  ///< Method that was used.
   std::size_t cells = 0;           ///< Number of cells of Voronoi culling.
-  /// Primitives for which Voronoi culling used the hierarchy: they touch many cells, or crowded cells.
+  /// Number of primitives that Voronoi culling compared with the hierarchy of boxes instead, because they touch many
+  /// cells or crowded cells.
   std::size_t left_over = 0;
-  std::size_t object_pairs = 0;  ///< Compared pairs of objects. An object compared with itself counts as a pair.
-  std::size_t candidates = 0;    ///< Pairs of primitives that culling did not exclude.
-  std::size_t exact_tests = 0;   ///< Pairs whose distance was computed.
+  std::size_t object_pairs = 0;  ///< Number of compared pairs of objects, including objects compared with themselves.
+  std::size_t candidates = 0;    ///< Number of pairs of primitives that culling did not exclude.
+  std::size_t exact_tests = 0;   ///< Number of pairs whose distance was computed.
   std::vector<PhaseTime> phases;
 };
 
@@ -117,28 +119,27 @@ struct ProximityPairs {
   ProximityReport report;
 };
 
-/// Returns the deepest point of a part of an overlap, and the closest point of the other surface. The point of the
-/// first object comes first. The distance is minus the depth.
+/// Returns the deepest point of a part of an overlap, and the closest point of the other object's surface. The point of
+/// the first object comes first. The distance of the returned pair is minus the depth.
 [[nodiscard]] PrimitivePair deepest_pair(const Penetration& part);
 
-/// Meshes that move, deform and change, with queries of proximity among them. A scene stores a copy of each mesh, and a
-/// hierarchy of boxes over it.
+/// Meshes that move, deform and change, with proximity queries between them. A scene stores a copy of each mesh, and a
+/// hierarchy of boxes over the mesh.
 ///
 /// Results equal those of an exhaustive search, which computes triangle_distance() for all pairs of primitives. Results
 /// are the same bytes for any number of threads. After updates, results equal those of a new scene with the updated
 /// objects. If several pairs are equally far apart, the pair with the smallest (first object, first primitive, second
-/// object, second primitive) is returned. Positions are those of the transformed meshes, rounded to doubles.
+/// object, second primitive) is returned. Queries use the positions of the transformed vertices, rounded to doubles.
 ///
-/// If an object is compared with itself, pairs of primitives that share a vertex are left out, unless stated otherwise.
-/// Vertices at the same position count as one vertex, so a mesh need not be welded.
+/// If an object is compared with itself, queries ignore pairs of primitives that share a vertex, unless stated
+/// otherwise. Vertices at the same position count as one vertex, so a mesh need not be welded.
 ///
 /// Error messages contain the name of an object, in quotes. An object without a name is called by its number: "object
 /// 3".
 ///
 /// Several threads may call queries at the same time, but not during updates. All queries throw Cancelled, and
 /// InvalidOption if an object does not exist. Queries throw InvalidMesh if more than 2^29 pairs of primitives touch, or
-/// are so close that they must be compared. An example is a mesh in which many equal triangles lie on top of each
-/// other.
+/// are so close that they must be compared. This happens, for example, if many triangles of a mesh coincide.
 class ProximityScene {
  public:
   /// Constructs an empty scene.
@@ -149,8 +150,7 @@ class ProximityScene {
   ~ProximityScene();
 
   /// Adds an object.
-  /// @param mesh  must pass validate(mesh). All coordinates must be of magnitude at most 1e70. The largest magnitude
-  ///              must be at least 1e-140, or 0.
+  /// @param mesh  must pass validate(mesh). The largest magnitude of a coordinate must be 0, or from 1e-140 to 1e70.
   /// @throws InvalidMesh; Cancelled, which leaves the scene unchanged.
   /// Cost: about 0.3 microseconds per primitive.
   ObjectId add(const MeshView& mesh, const ObjectOptions& options = {}, const Context& context = {});
@@ -158,25 +158,27 @@ class ProximityScene {
   /// Changes the name of an object in messages: see ObjectOptions::name.
   void rename(ObjectId object, std::string name);
 
-  /// Sets new positions of all vertices of an object, before its transform.
-  /// @throws InvalidMesh, also for another number of vertices. Cancelled; the object must then be updated again before
-  /// it is used.
+  /// Sets new positions of all vertices of an object. The object's transform is applied to these positions.
+  /// @throws InvalidMesh, also if the number of vertices differs. Cancelled; after that, the object must be updated
+  /// again before it is used.
   /// Cost: a fifth of that of add().
   void update(ObjectId object, std::span<const Vec3d> vertices, const Context& context = {});
   /// Replaces the transform of an object.
-  /// @throws InvalidOption if the new transform is not rigid to 1e-9, is a reflection, or moves beyond 1e70.
+  /// @throws InvalidOption if the new transform is not rigid to 1e-9, is a reflection, or has a translation beyond
+  /// 1e70.
   void update(ObjectId object, const RigidTransform& place);
   /// Replaces the mesh of an object. Its transform and options stay.
   /// @throws as add().
   void update(ObjectId object, const MeshView& mesh, const Context& context = {});
 
-  /// Excludes a pair of objects from comparisons, whatever their layers. Both may be the same object.
+  /// Excludes a pair of objects from comparisons, whatever their layers. If `first` and `second` are equal, the object
+  /// is no longer compared with itself.
   /// @param is_excluded  false: removes an earlier exclusion of this pair.
   void exclude(ObjectId first, ObjectId second, bool is_excluded = true);
 
   /// Returns the number of objects that were added, including those that were removed.
   [[nodiscard]] std::size_t size() const;
-  /// Returns the mesh of an object, before its transform. The view is valid until the object changes.
+  /// Returns the mesh of an object, without the object's transform. The view is valid until the object changes.
   [[nodiscard]] MeshView mesh(ObjectId object) const;
 
   /// Returns the closest pair of primitives of two objects, whatever their layers. If both objects are the same,
@@ -186,36 +188,37 @@ class ProximityScene {
   [[nodiscard]] std::optional<PrimitivePair> separation(ObjectId first, ObjectId second,
                                                         double max_distance = std::numeric_limits<double>::infinity(),
                                                         const Context& context = {}) const;
-  /// Returns the closest pair of primitives of each compared pair of objects, by ascending (first, second) object.
-  /// Pairs of objects without primitives within max_distance are left out.
+  /// Returns the closest pair of primitives of each compared pair of objects, by ascending (first, second) object. The
+  /// result omits pairs of objects that have no two primitives within max_distance of each other.
   [[nodiscard]] ProximityPairs separation(double max_distance = std::numeric_limits<double>::infinity(),
                                           const Context& context = {}) const;
 
-  /// Returns true if two objects meet, whatever their layers: if a primitive of one has a point in common with a
-  /// primitive of the other. The search stops at the first such pair. Only surfaces count, so a solid that lies inside
-  /// another one does not meet it. The answer is exact, as that of collisions(). If both objects are the same, returns
-  /// true if collisions() would find a pair within the object.
+  /// Returns true if two objects meet, whatever their layers. Objects meet if a primitive of the first object and a
+  /// primitive of the second object have a common point. The search stops at the first such pair. Only surfaces are
+  /// compared, so a solid in the interior of another solid does not meet it. The answer is exact, like that of
+  /// collisions(). If both objects are the same, returns true if collisions() would find a pair within the object.
   /// @throws as collisions(), except OutOfMemory.
-  /// Cost: 0.2 to 30 microseconds for objects that are apart or meet at many places; more for objects that are close at
-  /// many places. Two objects need no memory for most searches.
+  /// Cost: 0.2 to 30 microseconds for objects that are apart or meet in many places. Objects that are close to each
+  /// other in many places take longer. Most searches for two objects allocate no memory.
   [[nodiscard]] bool meets(ObjectId first, ObjectId second, const Context& context = {}) const;
-  /// Returns true if any compared pair of objects meets. The search stops at the first pair.
+  /// Returns true if the objects of any compared pair meet. The search stops at the first such pair.
   /// @throws as meets() of two objects.
   [[nodiscard]] bool meets(const Context& context = {}) const;
-  /// Returns for each given transform of the second object 1 if it then meets the first object, else 0. The scene does
-  /// not change. Entry k equals meets() after update(second, transforms[k]).
-  /// @param transforms  of the second object; they replace its own.
-  /// @throws InvalidOption if a transform is not rigid to 1e-9, is a reflection, or moves beyond 1e70. It is also
-  /// thrown if both objects are the same. Otherwise as meets(). Cost: that of meets() for each transform, divided by
-  /// the number of threads. It is about 0.2 microseconds if the primitives that met at the transform before meet again.
-  /// Progress counts the transforms.
+  /// Tests the second object at each of the given transforms. Entry k of the result is 1 if the object meets the first
+  /// object at transforms[k], otherwise 0. It equals the result of meets() after update(second, transforms[k]). The
+  /// scene does not change.
+  /// @param transforms of the second object; each replaces the object's present transform.
+  /// @throws InvalidOption if a transform is not rigid to 1e-9, is a reflection, or has a translation beyond 1e70. It
+  /// is also thrown if both objects are the same. Otherwise as meets().
+  /// Cost: that of meets() for each transform, divided by the number of threads. A transform takes about 0.2
+  /// microseconds if the primitives that met at the previous transform meet again. Progress counts the transforms.
   [[nodiscard]] std::vector<std::uint8_t> meets(ObjectId first, ObjectId second,
                                                 std::span<const RigidTransform> transforms,
                                                 const Context& context = {}) const;
 
   /// Returns a pair for each primitive of the scene: the primitive, and the closest of all primitives that it is
-  /// compared with. Primitives without such a partner within max_distance are left out. Pairs are sorted by ascending
-  /// (first object, first primitive). (Sud 2006, ch. 4: the N-body distance query.)
+  /// compared with. The result omits primitives that have no such partner within max_distance. Pairs are sorted by
+  /// ascending (first object, first primitive). (Sud 2006, ch. 4: the N-body distance query.)
   [[nodiscard]] ProximityPairs closest_primitives(double max_distance = std::numeric_limits<double>::infinity(),
                                                   const Context& context = {}) const;
 
@@ -232,19 +235,22 @@ class ProximityScene {
   /// corner.
   [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
 
-  /// Returns all pairs of a vertex and a face, and of two edges, of compared objects that meet while objects move. For
-  /// each pair, the result contains the time of the first contact: see continuous_collisions(). Objects without a
-  /// motion rest. The scene does not change: call update() to move its objects afterwards.
+  /// Returns all collisions of compared objects while objects move: pairs of a vertex and a face, and pairs of two
+  /// edges. For each pair, the result contains the time of the first contact: see continuous_collisions(). Objects
+  /// without an entry in `motions` do not move. The scene does not change: call update() to move its objects
+  /// afterwards.
   /// @param motions  at most one for each object.
-  /// @throws InvalidMesh for vertices as update() does; InvalidOption; OutOfMemory if more than 2^26 pairs collide.
+  /// @throws InvalidMesh for vertices that update() rejects; InvalidOption; OutOfMemory if more than 2^26 pairs
+  /// collide.
   [[nodiscard]] SceneCollisions continuous(std::span<const ObjectMotion> motions, const ImpactOptions& options = {},
                                            const Context& context = {}) const;
 
-  /// Returns the first contact of objects that move: the first of all pairs that continuous() returns, by time. Among
-  /// pairs with the same time, it is the first that continuous() lists. It does not search for the other pairs.
+  /// Returns the first contact of objects that move: the earliest of all pairs that continuous() returns. If several
+  /// pairs have this time, returns the pair that continuous() lists first. The function does not search for the later
+  /// pairs.
   /// @param motions  at most one for each object.
   /// @return nullopt if nothing meets.
-  /// @throws InvalidMesh for vertices as update() does; InvalidOption.
+  /// @throws InvalidMesh for vertices that update() rejects; InvalidOption.
   /// Cost: see the function first_contact() (blum/proximity/first_contact.hpp).
   [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const ObjectMotion> motions,
                                                           const ImpactOptions& options = {},
@@ -256,8 +262,8 @@ class ProximityScene {
   /// If one solid lies in the other, the depth is the largest distance of the inner solid's points from the outer
   /// solid's surface. If faces of both solids coincide, depths depend on which object is first, by up to a factor of 2
   /// (docs/theory/proximity.md). If both objects are the same, returns the connected regions in which the winding
-  /// number of the object's surface is 2 or more. The shells of an object may cross or touch, or lie in each other and
-  /// face the same way. Then the object is the union of the solids that they bound.
+  /// number of the object's surface is 2 or more. The shells of an object may cross or touch. One shell may also lie in
+  /// another and face the same way. In these cases, the object is the union of the solids that its shells bound.
   /// @throws InvalidMesh if an object is not closed, or faces inwards. It is also thrown if an object is further from
   /// the origin than about 1e9 times its size. Rounding then hides the object's shape. InvalidOption; Cancelled.
   /// Cost: about 2 microseconds per triangle and 0.1 ms per pair of triangles that cross. The depth of each common part
@@ -274,24 +280,27 @@ class ProximityScene {
   /// microseconds per triangle, once for each object. Progress counts the pairs.
   [[nodiscard]] Penetrations penetrations(const PenetrationOptions& options = {}, const Context& context = {}) const;
 
-  /// Returns bounds on the length of the shortest translation of the first solid that separates it from the second.
-  /// Unlike penetration(), this is one length for the whole pair. Both bounds are equal, except for rounding, if both
-  /// solids are convex. Both are 0 if the solids are apart or touch.
+  /// Returns bounds on the length of the shortest translation of the first solid that separates it from the second. The
+  /// bounds are for the pair of solids as a whole, while penetration() returns a depth for each part of their overlap.
+  /// If both solids are convex, the bounds are equal, except for rounding. If the solids are apart or touch, the bounds
+  /// are 0.
   /// @throws InvalidMesh as penetration(); InvalidOption, also if both objects are the same; Cancelled.
   /// Cost: see blum::least_translation().
   [[nodiscard]] LeastTranslation least_translation(ObjectId first, ObjectId second,
                                                    const TranslationOptions& options = {},
                                                    const Context& context = {}) const;
 
-  /// Returns the signed distance of two solids, mesh units. It is their distance if they are apart, 0 if they touch,
-  /// and minus the largest depth if they overlap. If the boxes of both objects are apart, their surfaces may be open.
-  /// If both objects are the same, and every two of its primitives share a vertex, the result is infinite.
+  /// Returns the signed distance of two solids, mesh units. The result is positive if the solids are apart, and 0 if
+  /// they touch. If the solids overlap, the result is minus the largest depth. If the boxes of both objects are apart,
+  /// their surfaces may be open. If both objects are the same, and every two primitives of the object share a vertex,
+  /// the result is infinite.
   /// @throws as penetration().
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
-  /// Returns the signed distances of all compared pairs of objects. For objects that are apart or touch, the pair is
-  /// that of separation(). For objects that overlap, it is the deepest_pair() of their deepest part, with a negative
-  /// distance. An object compared with itself is left out if every two of its primitives share a vertex.
+  /// Returns the signed distances of all compared pairs of objects. For objects that are apart or touch, the result
+  /// contains the pair of separation(). For objects that overlap, it contains the deepest_pair() of the deepest part,
+  /// with a negative distance. An object compared with itself is left out if every two of its primitives share a
+  /// vertex.
   /// @throws as signed_separation().
   /// Cost: that of separation(), plus that of penetration() for each pair whose boxes meet.
   [[nodiscard]] ProximityPairs signed_separations(const PenetrationOptions& options = {},
@@ -302,7 +311,7 @@ class ProximityScene {
   std::unique_ptr<Data> data_;
 };
 
-/// Options of a query that is called by name. A query ignores the options that its method does not have.
+/// Options of a query that is called by name. A query ignores the options that its method does not take.
 struct PairQueryOptions {
   double max_distance = std::numeric_limits<double>::infinity();  ///< Largest distance of a pair, mesh units.
   PenetrationOptions penetration;

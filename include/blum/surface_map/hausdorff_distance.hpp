@@ -22,7 +22,7 @@ struct HausdorffOptions {
   std::optional<double> tolerance = {};
   /// Largest number of points of a mesh that the search stores: the mesh's vertices, and points added between them. If
   /// more would be needed, the search stops with a wider interval. Each point takes up to 150 bytes. Values above
-  /// max_id_count count as max_id_count.
+  /// max_id_count are treated as max_id_count.
   std::size_t max_points = 20'000'000;
 };
 
@@ -47,7 +47,8 @@ struct DirectedHausdorff {
   double upper = 0;
   /// A point of the mesh whose distance is at least `lower`, and the point of the other mesh that is closest to it.
   std::array<Vec3d, 2> points;
-  /// primitive of the mesh that contains the first point; triangles count first, then segments, then points
+  /// index of the primitive of the mesh that contains the first point; triangles are numbered first, then segments,
+  /// then points
   std::size_t primitive = 0;
   SiteId site;                  ///< site of the other mesh that contains the second point
   std::size_t evaluations = 0;  ///< number of points at which the distance was computed
@@ -100,22 +101,22 @@ struct Description<HausdorffDistance> {
 /// Computes the one-sided Hausdorff distance of `mesh` from `other`.
 ///
 /// @param mesh, other  any soups of triangles, segments and points.
-/// @return             an interval that contains the distance, rounding included. It is no wider than the tolerance,
-///                     unless max_points has ended the search. The smallest effective tolerance is 1e-13 times the
-///                     largest coordinate; smaller values are raised to it. The result is the same for any number of
-///                     threads.
-/// @throws InvalidMesh, also if one mesh, or the distance between both, is more than 1e140 times as large as the other
-/// mesh.
+/// @return             an interval that contains the distance, rounding included. The interval is at most as wide as
+///                     the tolerance, unless max_points ended the search. Tolerances below 1e-13 times the largest
+///                     coordinate are raised to this value. The result is the same for any number of threads.
+/// @throws InvalidMesh, also if the larger mesh, or the distance between the meshes, is more than 1e140 times as large
+/// as the smaller mesh.
 /// @throws InvalidOption, Cancelled.
-/// Cost: two hierarchies and one search per vertex. Then the search adds points near those with the largest distances,
-/// until the tolerance is reached. If n triangles coincide without sharing vertices, the cost is O(n^2).
+/// Cost: two hierarchies of boxes are built, and the distance of each vertex is found by one search. Then the search
+/// adds points near the points with the largest distances, until the tolerance is reached. If n triangles coincide
+/// without sharing vertices, the cost is O(n^2).
 /// Method: docs/theory/surface-maps.md.
 [[nodiscard]] DirectedHausdorff directed_hausdorff_distance(const MeshView& mesh, const MeshView& other,
                                                             const HausdorffOptions& options = {},
                                                             const Context& context = {});
 
-/// Computes the Hausdorff distance of two meshes: the larger of the two one-sided distances. All points of their
-/// primitives count, not only vertices.
+/// Computes the Hausdorff distance of two meshes: the larger of the two one-sided distances. The distances are those of
+/// all points of the primitives, not only of vertices.
 [[nodiscard]] HausdorffDistance hausdorff_distance(const MeshView& a, const MeshView& b,
                                                    const HausdorffOptions& options = {}, const Context& context = {});
 

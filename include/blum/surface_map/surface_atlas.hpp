@@ -18,14 +18,14 @@
 namespace blum {
 
 /// Position in a texture, in texels: x to the right, y down. Texel (i, j) is the square from (i, j) to (i + 1, j + 1).
-/// Its middle is (i + 0.5, j + 0.5).
+/// The middle of the texel is (i + 0.5, j + 0.5).
 struct TexturePlace {
   double x = 0, y = 0;
   [[nodiscard]] friend constexpr bool operator==(const TexturePlace&, const TexturePlace&) = default;
 };
 
-/// Layout of the triangles of a mesh in a texture. It depends on the connectivity of the mesh. If made by
-/// surface_atlas(), it also depends on the lengths of edges. It stays usable while the vertices move.
+/// Layout of the triangles of a mesh in a texture. The layout depends on the connectivity of the mesh. A layout that
+/// surface_atlas() makes also depends on the lengths of edges. The layout stays valid when the vertices move.
 struct SurfaceAtlas {
   std::uint32_t width = 0;   ///< texels
   std::uint32_t height = 0;  ///< texels
@@ -36,8 +36,8 @@ struct SurfaceAtlas {
   /// If lookups in several triangles read a texel, it belongs to the triangle in which its middle lies deepest. If the
   /// middle lies in none of these triangles, the texel belongs to the closest triangle.
   Buffer<TriangleId> triangle;
-  /// True: lookups in two triangles never read the same texel. False: such lookups may read the same texel. Atlases
-  /// from given texture coordinates always have false.
+  /// True if lookups in two different triangles never read the same texel. Always false for atlases from given texture
+  /// coordinates.
   bool is_separate = true;
 
   [[nodiscard]] std::size_t size() const { return triangle.size(); }
@@ -46,10 +46,10 @@ struct SurfaceAtlas {
   [[nodiscard]] std::array<std::array<float, 2>, 3> texture_coordinates(TriangleId of) const;
 };
 
-/// Makes an atlas with a chart of its own for each triangle: a right triangle, whose legs show the two shorter edges of
-/// the triangle. The length of a leg is the length of the edge, rounded up to whole texels. Two charts of similar size
-/// share a rectangle. No triangle is mirrored. Any mesh with triangles has an atlas. (Legs are powers of two in Sud
-/// 2006, section 3.3.)
+/// Makes an atlas with a separate chart for each triangle of the mesh. A chart is a right triangle, whose legs show the
+/// two shorter edges of the mesh's triangle. The length of a leg is the length of the edge, rounded up to whole texels.
+/// Two charts of similar size share a rectangle. No triangle is mirrored. The function works for any mesh with
+/// triangles. (In Sud 2006, section 3.3, the lengths of legs are powers of two.)
 ///
 /// @param texel  side of a texel on the surface, mesh units, > 0. Along the two shorter edges of each triangle, texels
 ///               are at most this long.
@@ -70,7 +70,7 @@ struct SurfaceAtlas {
 /// @param width, height  size of the texture in texels, each 1 to 16384.
 /// @throws InvalidMesh, also if the mesh has no triangles.
 /// @throws InvalidOption if a size or an index is out of range, or if `corners` does not have one entry per triangle.
-/// Also if a used position is not finite, or lies outside the texture.
+/// It is also thrown if a position that a triangle uses is not finite, or lies outside the texture.
 /// @throws InvalidOption if two triangles cover the middle of the same texel; the message contains the indices of both
 /// triangles.
 /// @throws Cancelled.
@@ -78,8 +78,8 @@ struct SurfaceAtlas {
                                               std::span<const Triangle> corners, std::uint32_t width,
                                               std::uint32_t height, const Context& context = {});
 
-/// Returns the point of the surface that a texel represents: the point of its triangle that the texel's middle shows.
-/// If the middle lies outside the triangle, the result is the closest point of the triangle.
+/// Returns the point of the surface that a texel represents: the point that the middle of the texel shows. If the
+/// middle lies outside the triangle's chart, the result is the closest point of the triangle.
 /// @param texel  index of a texel that belongs to a triangle.
 /// Cost: O(vertices); for many texels use surface_texels().
 [[nodiscard]] Vec3d surface_point(const MeshView& mesh, const SurfaceAtlas& atlas, std::size_t texel);
@@ -95,11 +95,11 @@ struct SurfaceTexels {
                                            const Context& context = {});
 
 /// Returns an upper bound for each triangle, mesh units. A lookup at a point of the triangle reads one or four texels.
-/// The bound limits the distance from this point to the surface points of these texels. For lookups of the nearest
+/// The bound applies to the distance from this point to the surface points of the texels. For lookups of the nearest
 /// texel, it bounds the distance to the texel's point. For bilinear lookups, it bounds the weighted mean of the
 /// distances to the points of the four nearest texels. The bound is half the diagonal of a texel, times the largest
-/// stretch from chart to triangle. It is larger if some of these texels belong to other triangles, and infinite if the
-/// chart has no area.
+/// stretch from chart to triangle. The bound is larger if some of the texels belong to other triangles, and infinite if
+/// the chart has no area.
 /// @throws InvalidMesh if mesh and atlas have different counts of triangles.
 /// @throws Cancelled.
 [[nodiscard]] std::vector<double> texel_reaches(const MeshView& mesh, const SurfaceAtlas& atlas,

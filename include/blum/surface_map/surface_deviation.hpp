@@ -20,15 +20,15 @@ namespace blum {
 
 struct DeviationOptions {
   /// Largest error of means, root mean squares and percentiles, > 0, mesh units. The surface is divided into pieces
-  /// until all errors are below. Unset: a two-thousandth of the diagonal of the box around both meshes. It is a tenth
-  /// of the mean distance if that is smaller. For percentiles, it is twice as much.
+  /// until all errors are below this value. Default: 1/2,000 of the diagonal of the box around both meshes, or a tenth
+  /// of the mean distance if that is smaller. The default for percentiles is twice this value.
   std::optional<double> max_error = {};
-  /// Largest number of pieces that are examined, 1 to 10^9. If more would be needed, the division stops with larger
-  /// errors. Each triangle is at least one piece, whatever this number. If the mesh has more than a quarter as many
-  /// triangles, they are cut evenly, into about seven to fifteen times as many pieces. Only the distance of the
-  /// centroid is then computed for each.
+  /// Largest number of pieces that are examined, 1 to 10^9. If more pieces are needed, the division stops with larger
+  /// errors. Each triangle is at least one piece, even if the mesh has more triangles than this number. If the mesh has
+  /// more triangles than a quarter of this number, the triangles are cut evenly. The cut gives about seven to fifteen
+  /// times this number of pieces. For each of them, only the distance of the centroid is computed.
   std::size_t pieces = 100'000;
-  /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside of the other
+  /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside the other
   /// mesh.
   SignMode sign = SignMode::none;
 };
@@ -53,17 +53,17 @@ struct Description<DeviationOptions> {
 };
 
 /// Statistics of the distances of all points of a surface from another mesh, weighted by area. The surface is divided
-/// into pieces. On pieces with one closest site, statistics are exact, except for rounding. On the others, two linear
-/// functions enclose the distance, and statistics are those of the mean of both.
+/// into pieces. On pieces with a single closest site, statistics are exact, except for rounding. On other pieces, two
+/// linear functions bound the distance from below and above, and statistics are those of the mean of the two functions.
 /// Members with `error` in their name are guaranteed bounds on errors, not estimates.
 struct SurfaceDeviation {
   static constexpr std::array<double, 7> percents{1, 5, 25, 50, 75, 95, 99};
 
   double mean = 0;        ///< Mesh units; signed if signs are requested.
-  double mean_error = 0;  ///< The true mean is at most this far from `mean`.
+  double mean_error = 0;  ///< The true mean differs from `mean` by at most this.
   double rms = 0;         ///< Root of the mean square.
   double rms_error = 0;
-  double smallest = 0;  ///< Smallest and largest distance, with an error of at most `percentile_error`.
+  double smallest = 0;  ///< Smallest distance; `percentile_error` bounds its error.
   double largest = 0;
   std::array<double, 7> percentiles{};  ///< Entry k: percents[k] percent of the area have smaller distances.
   double percentile_error = 0;          ///< Bound on the error of each percentile, of `smallest` and of `largest`.
@@ -103,8 +103,8 @@ struct Description<SurfaceDeviation> {
 /// @param other  any soup of triangles, segments and points.
 /// @return       the same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled.
-/// Cost: one search of the closest point for each triangle, and 2 to 10 us of one core for each piece. If both meshes
-/// have few triangles, for example boxes, they take few pieces.
+/// Cost: one search of the closest point for each triangle, and 2 to 10 us of one core for each piece. Two meshes with
+/// few triangles, for example boxes, need few pieces.
 /// Method: docs/theory/surface-maps.md.
 [[nodiscard]] SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other,
                                                  const DeviationOptions& options = {}, const Context& context = {});

@@ -69,13 +69,13 @@ struct Description<SurfaceMapOptions> {
 };
 
 /// Distance vector field over the surface of a mesh, as a texture. Each texel represents a point of the surface (see
-/// surface_point()), and stores the vector to its closest point. Lists with an entry for each texel have atlas->size()
-/// entries, in rows from the top, x fastest.
+/// surface_point()), and stores the vector from this point to the closest point. Lists with an entry for each texel
+/// have atlas->size() entries, in rows from the top, x fastest.
 struct SurfaceMap {
   std::shared_ptr<const SurfaceAtlas> atlas;  ///< shared by the maps of a SurfaceMapper; never null
   SurfaceQuantity quantity = SurfaceQuantity::distance;
-  /// Distance at each texel's point, mesh units. Like all float members, it is at most 3e38. Infinite if nothing lies
-  /// within max_distance; NaN for texels of no triangle.
+  /// Distance at each texel's point, mesh units. Finite values of this and all other float members are at most 3e38.
+  /// The distance is infinite if nothing lies within max_distance, and NaN for texels of no triangle.
   Buffer<float> distance;
   /// Vector from each texel's point to the closest point, mesh units. For ray_thickness, it ends at the far side; for
   /// ball_thickness, at the other point that the ball touches. Zero if no such point was found.
@@ -92,7 +92,8 @@ struct SurfaceMap {
   std::vector<float> error;
 
   /// Exact distance or thickness at each vertex of the mesh; NaN for vertices of no triangle. For quantities other than
-  /// `distance`, the vertex counts as a point of the triangle with the smallest index around it.
+  /// `distance`, the vertex is treated as a point of the triangle with the smallest index among the triangles at the
+  /// vertex.
   std::vector<double> vertex_distance;
   struct FaceSummary {
     float smallest = 0;  ///< smallest value of the triangle's texels, mesh units; NaN if it has no texels
@@ -104,8 +105,8 @@ struct SurfaceMap {
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;        ///< Reason for this rule, one sentence.
   std::vector<PhaseTime> phases;  ///< Time of each phase.
-  /// Warnings about the signs (ClosestPointQuery::warnings()), or, for thickness, thickness_warnings(). Then a warning
-  /// if no texel has a value (WarningCode::nothing_found). Empty for maps that were read from files.
+  /// For distances, the warnings about signs (ClosestPointQuery::warnings()). For thickness, thickness_warnings(). The
+  /// last warning is WarningCode::nothing_found if no texel has a value. Empty for maps that were read from files.
   std::vector<Warning> warnings;
 
   /// Returns the index of a texel with the smallest distance; nullopt if no texel has a distance.
@@ -122,15 +123,15 @@ struct SurfaceMap {
 /// @param target  a mesh with triangles; its segments and points get no texels.
 /// @param other   any soup of triangles, segments and points. To measure the distance to several objects, pass them as
 ///                one mesh.
-/// @return        exact at the point of each texel, rounded to float32; between texels, off by at most
-///                SurfaceMap::error. The same for any number of threads.
+/// @return        a map that is exact at the point of each texel, rounded to float32. Between texels, lookups have an
+///                error of at most SurfaceMap::error. The map is the same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled.
 /// Cost: about 0.1 to 0.2 us per texel on two cores; 28 bytes per texel. Method: docs/theory/surface-maps.md.
 [[nodiscard]] SurfaceMap surface_distance_map(const MeshView& target, const MeshView& other,
                                               const SurfaceMapOptions& options = {}, const Context& context = {});
 
 /// Computes the distance from every point of a surface to the same mesh. For each point of the surface, primitives that
-/// share a vertex with its triangle are ignored. SurfaceMapOptions::sign is ignored.
+/// share a vertex with the point's triangle are ignored. SurfaceMapOptions::sign is ignored.
 [[nodiscard]] SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& options = {},
                                            const Context& context = {});
 

@@ -68,20 +68,21 @@ struct Description<ThicknessOptions> {
 /// Thickness of a solid at a point of its surface.
 struct Thickness {
   double thickness = 0;  ///< Mesh units; infinite if nothing lies on the far side.
-  /// Point where the ray leaves the solid, or other point that the ball touches; the given point if nothing was found.
+  /// For rays, the point where the ray leaves the solid; for balls, the other point that the ball touches. The given
+  /// point if nothing was found.
   Vec3d opposite;
   TriangleId triangle;  ///< triangle that contains `opposite`; none() if nothing was found
 };
 
 /// Computes the thickness of a solid at points of its surface.
 ///
-/// @param solid   a mesh whose triangles face outwards. If it is not closed, points opposite to a hole have no
-///                thickness, or a wrong one. Triangles without area have an infinite thickness, and limit no ball.
-/// @param points  finite. Each is replaced by the closest point of the surface. On edges and at vertices, that point
-///                belongs to the triangle with the smallest index. A point on the border of its triangle is moved
-///                inside, by a ten-millionth of the way to the triangle's centroid.
-/// @return        one entry per point, exact up to rounding. Balls wider than eight diagonals of the box around the
-///                solid count as infinite. The result is the same for any number of threads.
+/// @param solid   a mesh whose triangles face outwards. If the mesh is not closed, the thickness is infinite or wrong
+///                at points opposite to a hole. Triangles without area have an infinite thickness, and limit no ball.
+/// @param points  finite. Each point is replaced by the closest point of the surface. A point on an edge or vertex
+///                belongs to the adjacent triangle with the smallest index. A point on the border of its triangle is
+///                moved towards the triangle's centroid, by a ten-millionth of the distance.
+/// @return        one entry per point, exact up to rounding. If a ball is wider than eight diagonals of the box around
+///                the solid, the thickness is infinite. The result is the same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, Cancelled.
 /// Cost: per point, on one core, about 1 us for a ray and 5 to 30 us for a ball. Balls that touch much of the surface
 /// at once, as in spheres, take far longer.
