@@ -23,15 +23,16 @@ struct AxisGraphOptions {
   /// Degrees. Faces of the mesh form one patch if they are connected through edges that bend by at most this angle.
   /// Used only if a mesh is given.
   double patch_angle = 30;
-  /// Threshold of the separation angle (theta) at which the axis was made, degrees. Triangles and edges with at most
-  /// this separation angle count as existing for homotopy alone. Leave it unset if angles are unknown; then no triangle
-  /// or edge counts as existing for homotopy alone.
+  /// Threshold of the separation angle (theta) at which the axis was made, degrees. The graph treats triangles and
+  /// edges with at most this separation angle as existing for homotopy alone: only to preserve the homotopy type. Leave
+  /// the threshold unset if angles are unknown. If it is unset, the graph treats no triangle or edge in this way.
   std::optional<double> homotopy_angle = {};
-  /// If true, sheets are those of pairs of patches. They are numbered as in the column `patch_sheet` of
-  /// label_patch_sheets(). Triangles inside a patch are left out.
+  /// If true, each sheet of the graph lies between one pair of patches. Sheets are numbered as in the column
+  /// `patch_sheet` of label_patch_sheets(). Triangles with the same patch on both sides are left out.
   bool of_patches = false;
-  /// Mesh units. If set, patches of the mesh are planes, spheres, cylinders and cones. Their vertices are at most this
-  /// far from the shape. Edges inside them bend by at most `patch_angle`. Used only if a mesh is given.
+  /// Mesh units. If set, each patch of the mesh is a part of a plane, sphere, cylinder or cone. The vertices of a patch
+  /// are at most this far from its shape. Edges inside a patch bend by at most `patch_angle`. Used only if a mesh is
+  /// given.
   std::optional<double> patch_fit = {};
 };
 
@@ -48,11 +49,10 @@ struct Description<AxisGraphOptions> {
              Range::between(0, 180)},
       Member{"of_patches", &AxisGraphOptions::of_patches, "",
              "true for sheets of pairs of patches, numbered as in the column patch_sheet of an axis with patches"},
-      Member{
-          "patch_fit", &AxisGraphOptions::patch_fit, "mesh units",
-          "if the mesh is given: patches are planes, spheres, cylinders and cones with vertices at most this far; if "
-          "unset, bends alone decide",
-          Range::positive()},
+      Member{"patch_fit", &AxisGraphOptions::patch_fit, "mesh units",
+             "if the mesh is given: largest distance of vertices from the plane, sphere, cylinder or cone of their "
+             "patch; if unset, bends alone decide",
+             Range::positive()},
   };
 };
 
@@ -95,7 +95,7 @@ struct Description<JunctionKind> {
   };
 };
 
-/// Vertex that does not lie in the middle of exactly one sheet, rim, seam or curve. Seams and curves begin and end at
+/// Vertex that does not lie in the interior of exactly one sheet, rim, seam or curve. Seams and curves begin and end at
 /// such vertices, unless they are closed.
 struct AxisJunction {
   std::uint32_t vertex = 0;  ///< Index of the vertex in the axis.
@@ -161,8 +161,8 @@ struct Description<AxisLine> {
   };
 };
 
-/// Smooth part of the surface of the input mesh. Its faces are connected through edges that have exactly two faces and
-/// bend by at most AxisGraphOptions::patch_angle. Faces without area belong to no patch.
+/// Smooth part of the surface of the input mesh. The faces of a patch are connected through edges that have exactly two
+/// faces and bend by at most AxisGraphOptions::patch_angle. Faces without area belong to no patch.
 struct AxisPatch {
   std::size_t faces = 0;
   double area = 0;
@@ -205,8 +205,8 @@ struct Description<AxisPatchPair> {
   };
 };
 
-/// Sheet of an axis. The border of a sheet is that of the sheet after cutting it open along seams. If the sheet lies on
-/// both sides of a seam, the seam counts twice as border.
+/// Sheet of an axis. The border of a sheet is measured after the sheet is cut open along seams. If the sheet lies on
+/// both sides of a seam, the border contains the seam twice.
 struct AxisSheet {
   std::uint32_t sheet = 0;  ///< Number of the sheet in the column `medial_columns::sheet`.
   std::size_t triangles = 0;
@@ -269,7 +269,7 @@ struct Description<AxisSheet> {
 /// index in these lists. The number of a sheet is AxisSheet::sheet, as in the axis.
 struct AxisGraph {
   std::vector<AxisSheet> sheets;        ///< Sheets with triangles, by ascending number.
-  std::vector<AxisLine> seams;          ///< Lines along edges of three or more triangles.
+  std::vector<AxisLine> seams;          ///< Lines along edges that belong to three or more triangles.
   std::vector<AxisLine> curves;         ///< Lines along edges without triangles.
   std::vector<AxisJunction> junctions;  ///< Junctions by ascending vertex.
   /// Patches of the mesh, in the order of their first faces; empty without a mesh.
@@ -311,8 +311,8 @@ struct Description<AxisGraph> {
 ///
 /// The separation angle of a triangle or an edge does not depend on theta. It is 0 if the triangle or edge exists only
 /// to preserve the homotopy type. Triangles and edges with an angle of at most theta (AxisGraphOptions::homotopy_angle)
-/// count as existing for homotopy alone. MedialCheck::homotopy_share counts triangles in the same way. Some of these
-/// triangles and edges were kept only because another triangle or edge prevented their removal.
+/// are treated as existing for homotopy alone. MedialCheck::homotopy_share treats triangles in the same way. Some
+/// triangles and edges with such an angle were kept only because another triangle or edge prevented their removal.
 ///
 /// In a graph of patches (AxisGraphOptions::of_patches), the column `patch_sheet` decides which triangles form a sheet.
 /// Triangles without such a sheet are left out, so fewer triangles may meet at an edge.
@@ -327,9 +327,9 @@ struct Description<AxisGraph> {
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options = {},
                                    const Context& context = {});
 
-/// Returns the same graph with the patches of the mesh. For every sheet, it lists the patches that contain the
-/// footprints of its vertices. Vertices are left out if their two footprints coincide, or their sites are not known. So
-/// the shares of a sheet (AxisPatchPair::share) may sum to less than 1.
+/// Returns the graph of a medial axis, including the patches of the mesh. For every sheet, the graph lists the patches
+/// that contain the footprints of the sheet's vertices. Vertices are left out if their two footprints coincide, or
+/// their sites are not known. So the shares of a sheet (AxisPatchPair::share) may sum to less than 1.
 /// @param mesh  mesh from which the axis was made. The sites of the axis are numbered as in SiteTable(mesh).
 /// @throws InvalidOption as above, and if the axis has a site that the mesh lacks; InvalidMesh.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options = {},

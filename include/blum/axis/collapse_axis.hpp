@@ -16,7 +16,7 @@ namespace blum {
 /// vertex belongs to no other edge. The edge is kept if its angle, or the angle of a triangle that contained it, is
 /// above theta. The angle of an edge is the smaller angle of its two vertices. Along a seam, the angle of an edge is
 /// larger than the angles of the edge's triangles. The homotopy type is preserved. The result for a larger theta is
-/// part of the result for a smaller one. The order of removal is that of Liu, Chambers, Letscher, Ju 2010, applied to
+/// part of the result for a smaller theta. The order of removal is that of Liu, Chambers, Letscher, Ju 2010, applied to
 /// complexes of triangles (see also Sud 2006, 5.6).
 ///
 /// @param walls  triangles with the columns that voronoi_complex() computes for VoronoiPart::medial_axis. Vertices need

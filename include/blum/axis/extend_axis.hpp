@@ -26,8 +26,8 @@ struct ExtendOptions {
   /// Largest distance of the new border from the surface, between the vertices of the border, as a fraction of the
   /// radius, > 0.
   double tolerance = 0.01;
-  /// True if extensions share vertices and edges with the sheets and extensions that they meet. Triangles of the axis
-  /// are then divided where an extension meets them. Curves through gaps that an extension closes are left out.
+  /// True if extensions share vertices and edges with the sheets and extensions that they meet. For this, triangles of
+  /// the axis are divided where an extension meets them. Curves through gaps that an extension closes are left out.
   bool join = true;
 };
 
@@ -50,9 +50,9 @@ struct Description<ExtendOptions> {
   };
 };
 
-/// Counts and lengths of rims, by how they were extended. A rim vertex counts once for each group of triangles around
-/// it that are connected through edges. `rim_vertices` is the sum of `reached_border`, `reached_sheet`, `at_border` and
-/// `not_reached`.
+/// Counts and lengths of rims, by how they were extended. A rim vertex is counted once for each group of triangles
+/// around it that are connected through edges. `rim_vertices` is the sum of `reached_border`, `reached_sheet`,
+/// `at_border` and `not_reached`.
 struct ExtendReport {
   double rim_length = 0;  ///< Length of the rims of the axis, mesh units.
   /// Length of the rims that have no new triangle and are not at the border, mesh units.
@@ -63,7 +63,7 @@ struct ExtendReport {
   std::size_t reached_sheet = 0;
   std::size_t at_border = 0;    ///< Rim vertices already at the border (`border_radius`) or on another sheet.
   std::size_t not_reached = 0;  ///< Rim vertices without a surface or sheet within ExtendOptions::max_length.
-  /// Rim edges without new triangles, because such triangles would fold back or leave the solid.
+  /// Rim edges without new triangles, because new triangles would fold back or leave the solid.
   std::size_t left_out = 0;
   double seam_length = 0;  ///< Length of the edges that extensions now share with other sheets, mesh units.
   /// Length of the edges of extensions that lie on other sheets at both ends, but share no edge with them, mesh units.
@@ -131,17 +131,18 @@ struct ExtendedAxis {
 ///
 /// Each rim vertex is joined to the closest point of the surface in the tangent plane of its sheet. The direction to
 /// the closest point differs by at most 65 degrees from the direction straight out of the rim. Between the closest
-/// points of neighbouring rim vertices, the new border follows edges and corners of the surface. If the way to the
-/// surface meets another sheet, or the extension of another sheet, the new triangles end there. The middle of each new
-/// triangle lies in the solid, and so do the middles of its sides, except for sides on the new border. A new triangle
-/// is turned by less than 80 degrees relative to the axis's triangle at the rim edge. Both triangles face the same way.
-/// The homotopy type is that of the axis, because the new triangles can be pushed back into the rims. Extensions of
-/// different rims may overlap if they meet at less than 15 degrees; this is not checked.
+/// points of neighbouring rim vertices, the new border follows edges and corners of the surface. If another sheet, or
+/// the extension of another sheet, lies between the rim and the surface, the new triangles end at this sheet or
+/// extension. The middle of each new triangle lies in the solid, and so do the middles of its sides, except for sides
+/// on the new border. A new triangle is turned by less than 80 degrees relative to the axis's triangle at the rim edge.
+/// Both triangles face the same way. The homotopy type is that of the axis, because the new triangles can be pushed
+/// back into the rims. Extensions of different rims may overlap if they meet at less than 15 degrees; this is not
+/// checked.
 ///
 /// With ExtendOptions::join, new triangles share vertices and edges with the sheet or extension that they meet. For
 /// this, triangles are divided, border vertices move by at most ExtendOptions::tolerance, and gaps of few edges are
-/// filled. Extensions are joined only where the Betti numbers stay those of the axis. All others keep their own
-/// vertices, and their length is ExtendReport::unshared_length.
+/// filled. Extensions are joined only where the Betti numbers stay those of the axis. Extensions that are not joined
+/// keep separate vertices. The length of their edges on other sheets is ExtendReport::unshared_length.
 ///
 /// @param axis   axis with radii and sheets, for example from MedialAxis::simplify(), fitted(), decimate() or a file.
 /// @param solid  solid of a mesh; the axis must be an axis of this solid.
@@ -149,8 +150,8 @@ struct ExtendedAxis {
 /// @throws InvalidOption if an option is out of range, radii or sheets are missing, or the solid is that of an image.
 /// The function also throws InvalidOption if problem_of_medial() reports a problem in the columns that the axis has.
 /// @throws Cancelled.
-/// Cost: about 0.1 ms per rim vertex, for Solid::inside() and a few ray casts. In large bodies without thin walls, a
-/// few ms per rim vertex.
+/// Cost: about 0.1 ms per rim vertex, for Solid::inside() and a few ray casts. In large bodies without thin walls, the
+/// cost is a few ms per rim vertex.
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOptions& options = {},
                                        const Context& context = {});
 

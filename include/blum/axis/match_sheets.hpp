@@ -17,13 +17,13 @@
 namespace blum {
 
 struct SheetMatchOptions {
-  /// Mesh units, >= 0. A point of a sheet lies on the other axis if it is at most this far from it. Default: a
-  /// hundredth of the diagonal of the box around the sheets of both axes.
+  /// Largest distance from the other axis at which a point of a sheet lies on the other axis, mesh units, >= 0.
+  /// Default: a hundredth of the diagonal of the box around the sheets of both axes.
   std::optional<double> tolerance = {};
   /// A sheet is large if its area is at least this share of the area of its axis, 0 to 1.
   double large_share = 0.01;
-  /// If true, sheets are those of pairs of patches: the column `patch_sheet` of label_patch_sheets(). Triangles inside
-  /// a patch are left out.
+  /// If true, the sheets of the column `patch_sheet` (label_patch_sheets()) are compared, which lie between pairs of
+  /// patches. Triangles with the same patch on both sides are left out.
   bool of_patches = false;
   /// Number of points that are spread over each axis, 1 to 10,000,000. Each sheet gets points in proportion to its
   /// area, but at least 16.
@@ -40,7 +40,7 @@ struct Description<SheetMatchOptions> {
              "of the box around both",
              Range::at_least(0)},
       Member{"large_share", &SheetMatchOptions::large_share, "",
-             "sheets are large from this share of the area of their axis on", Range::between(0, 1)},
+             "smallest share of the axis's area that a large sheet has", Range::between(0, 1)},
       Member{"of_patches", &SheetMatchOptions::of_patches, "",
              "true to compare sheets of pairs of patches (column patch_sheet)"},
       Member{"points", &SheetMatchOptions::points, "",
@@ -52,7 +52,7 @@ struct Description<SheetMatchOptions> {
 struct SheetOverlap {
   std::uint32_t sheet = 0;  ///< Number of the sheet of the other axis.
   double area = 0;          ///< Area of the part.
-  double share = 0;         ///< Area of the part, divided by the area of its own sheet, 0 to 1.
+  double share = 0;         ///< Area of the part, divided by the area of the whole sheet, 0 to 1.
 };
 
 template <>
@@ -62,7 +62,7 @@ struct Description<SheetOverlap> {
   static constexpr std::tuple members{
       Member{"sheet", &SheetOverlap::sheet, "", "sheet of the other axis"},
       Member{"area", &SheetOverlap::area, "square mesh units", "area of the part"},
-      Member{"share", &SheetOverlap::share, "", "share of the area of its own sheet, 0 to 1"},
+      Member{"share", &SheetOverlap::share, "", "area of the part, divided by the area of the whole sheet, 0 to 1"},
   };
 };
 
@@ -71,16 +71,16 @@ struct MatchedSheet {
   std::uint32_t sheet = 0;  ///< Number of the sheet in its axis.
   double area = 0;
   bool large = false;
-  /// Its governors: the patches of the surface on both sides, the smaller number first. Unset if the axis has no
-  /// columns `patch_a` and `patch_b`.
+  /// Governors of the sheet: the patches of the surface on both sides, the smaller number first. The pair of patches
+  /// with the largest part of the sheet is chosen. Unset if the axis has no columns `patch_a` and `patch_b`.
   std::optional<std::array<std::uint32_t, 2>> sides;
-  double sides_share = 0;  ///< Share of the sheet's area between these patches, 0 to 1. They are the largest such pair.
-  /// The sheet of the other axis that matches. More than half of each of the two sheets lies on the other.
+  double sides_share = 0;  ///< Share of the sheet's area that lies between the patches in `sides`, 0 to 1.
+  /// Matching sheet of the other axis. More than half of the area of each of the two sheets lies on the other sheet.
   std::optional<std::uint32_t> partner;
   double on_partner = 0;  ///< Area of the part that lies on the partner.
   double on_other = 0;    ///< Area of the part that lies on any sheet of the other axis.
-  std::optional<double>
-      largest_distance;                ///< From a point of the sheet to the other axis; unset if that has no sheets.
+  /// Largest distance of a point of the sheet from the other axis; unset if the other axis has no sheets.
+  std::optional<double> largest_distance;
   std::vector<SheetOverlap> overlaps;  ///< By descending area.
 };
 
@@ -95,9 +95,9 @@ struct Description<MatchedSheet> {
       Member{"sides", &MatchedSheet::sides, "",
              "patches of the surface on both sides, the smaller number first; none if the axis has no patches"},
       Member{"sides_share", &MatchedSheet::sides_share, "",
-             "share of the area between these patches, 0 to 1; no other pair has more"},
+             "share of the area between the patches in 'sides', 0 to 1; no other pair of patches has a larger share"},
       Member{"partner", &MatchedSheet::partner, "",
-             "sheet of the other axis, if more than half of each of the two lies on the other"},
+             "matching sheet of the other axis: more than half of each of the two sheets lies on the other sheet"},
       Member{"on_partner", &MatchedSheet::on_partner, "square mesh units", "area of the part on the partner"},
       Member{"on_other", &MatchedSheet::on_other, "square mesh units",
              "area of the part on any sheet of the other axis"},
@@ -137,9 +137,10 @@ struct Description<MatchedAxis> {
 struct SheetMatches {
   MatchedAxis first, second;
   double tolerance = 0;  ///< The tolerance that was used, mesh units.
-  /// Pairs of partners of which both have more than half of their area between two patches (MatchedSheet::sides).
+  /// Number of pairs of partners whose patches are compared. Both sheets of such a pair have more than half of their
+  /// area between two patches (MatchedSheet::sides).
   std::size_t compared_sides = 0;
-  std::size_t same_sides = 0;  ///< Those among them that have the same patches.
+  std::size_t same_sides = 0;  ///< Compared pairs with the same patches.
   /// True if each large sheet of both axes has a partner, and compared patches of large sheets are the same.
   bool same_large_sheets = false;
 };
@@ -153,28 +154,28 @@ struct Description<SheetMatches> {
       Member{"second", &SheetMatches::second, "", "sheets of the second axis"},
       Member{"tolerance", &SheetMatches::tolerance, "mesh units", "the tolerance that was used"},
       Member{"compared_sides", &SheetMatches::compared_sides, "",
-             "pairs of partners of which both lie mostly between two patches"},
-      Member{"same_sides", &SheetMatches::same_sides, "", "such pairs with the same patches"},
+             "pairs of partners whose patches are compared, because both sheets lie mostly between two patches"},
+      Member{"same_sides", &SheetMatches::same_sides, "", "compared pairs with the same patches"},
       Member{"same_large_sheets", &SheetMatches::same_large_sheets, "",
              "true if each large sheet has a partner, with the same patches on its sides where they were compared"},
   };
 };
 
-/// Compares the sheets of two medial axes of one solid, for example that of medial_axis() with that of
+/// Compares the sheets of two medial axes of one solid, for example an axis of medial_axis() with an axis of
 /// voronoi_complex().
 ///
 /// Points are spread evenly over each sheet, by area. Each point stands for the same part of its sheet's area. A point
 /// lies on the sheet of the closest triangle of the other axis, if this triangle is within the tolerance. Two sheets
-/// are partners if more than half of the points of each lie on the other. So no sheet has two partners.
+/// are partners if more than half of the points of each sheet lie on the other sheet. So no sheet has two partners.
 ///
-/// Shares are exact to about 1 / sqrt(n) for n points on a sheet, and much better where borders are short. Points on
-/// triangles without area do not count, and a sheet without area has no partner. Curves are not compared.
+/// Shares are exact to about 1 / sqrt(n) for n points on a sheet, and much better where borders are short. Triangles
+/// without area get no points, and a sheet without area has no partner. Curves are not compared.
 /// Governors of both axes are comparable only if both were made from the same mesh with the same options of patches.
 /// @param first, second  axes with the column `sheet`. Any other complex with this column may be given, too.
 /// @return      the same result for any number of threads. If an axis has no sheets, no sheet has a partner.
-/// @throws InvalidOption if an option is out of range, or if triangles have no column `sheet`, or with `of_patches`
-/// none of label_patch_sheets(). InvalidMesh with the text of problem_of(); Cancelled. Cost: O(n log n) for n
-/// triangles, and about 2 us per point.
+/// @throws InvalidOption if an option is out of range, or if triangles lack the column `sheet` (with `of_patches`:
+/// `patch_sheet`). InvalidMesh with the text of problem_of(); Cancelled. Cost: O(n log n) for n triangles, and about 2
+/// us per point.
 [[nodiscard]] SheetMatches match_sheets(const Complex& first, const Complex& second,
                                         const SheetMatchOptions& options = {}, const Context& context = {});
 

@@ -17,7 +17,7 @@ namespace blum {
 /// @param theta  degrees, 0 to 180.
 /// @return       remaining part of the axis, with its columns; edges have only the columns of medial_columns. Roles and
 ///               sheets are labelled anew, and sheets keep their order. The result for a larger theta is part of the
-///               result for a smaller one.
+///               result for a smaller theta.
 /// @throws InvalidOption if theta is out of range, or sheets or the angles of edges and triangles are missing. The
 /// function also throws InvalidOption if problem_of_medial() reports a problem in the columns that the axis has.
 /// @throws Cancelled.

@@ -75,8 +75,8 @@ struct GeometryCheck {
   std::size_t vertices = 0;    ///< Number of checked vertices.
   std::size_t not_finite = 0;  ///< Vertices with a coordinate, radius, footprint or angle that is not finite.
   std::size_t outside = 0;     ///< Vertices outside the solid by more than the tolerance.
-  /// Largest distance of a vertex from the solid, mesh units. For SolidRule::winding, it is this distance minus the
-  /// diagonal of a voxel.
+  /// Largest distance of a vertex from the solid, mesh units. For SolidRule::winding, the diagonal of a voxel is
+  /// subtracted.
   double outside_by = 0;
   double radius_error = 0;           ///< Largest |radius - exact distance to the surface|, mesh units.
   double footprint_off_surface = 0;  ///< Largest distance of a footprint from the surface, mesh units.
@@ -134,7 +134,7 @@ struct EdgeCheck {
   Vec3d where;                ///< Point at the distance `outside_by`, mesh units.
   std::size_t across = 0;     ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
   Vec3d across_at;            ///< Position of the first crossing of a gap, mesh units.
-  std::size_t undecided = 0;  ///< Edges that may or may not cross a gap. If any exist, only Betti numbers are proven.
+  std::size_t undecided = 0;  ///< Edges that possibly cross a gap. If any exist, only Betti numbers are proven.
   double tolerance = 0;       ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
   bool holds = false;         ///< True if no edge is outside or crosses a gap.
 };
@@ -174,13 +174,13 @@ struct Description<EdgeCheck> {
 struct HomologyCheck {
   std::size_t paths = 0;      ///< Closed paths along the surface with which linking numbers were computed.
   std::size_t triangles = 0;  ///< Triangles of the axis in bodies with tunnels.
-  /// Triangles that span a hole of the solid: their border is linked with such a path.
+  /// Triangles that span a hole of the solid, because the triangle's border is linked with one of the `paths`.
   std::size_t across = 0;
   Vec3d where;                      ///< Centroid of the first triangle across a hole, mesh units.
   std::size_t doubtful = 0;         ///< Edges that touch the surface, so that their linking numbers are undecided.
   Proven proven = Proven::nothing;  ///< Result that holds in every body.
-  bool holds = false;               ///< True if the check ran and found no mismatch, even if it proved little.
-  std::string shown;                ///< One sentence: the proven result, and why no more is proven.
+  bool holds = false;  ///< True if the check ran and found no mismatch, even if it proved only a weak result.
+  std::string shown;   ///< One sentence: the proven result, and why no stronger result is proven.
 };
 
 template <>
@@ -204,26 +204,26 @@ struct Description<HomologyCheck> {
   };
 };
 
-/// Distances between a solid and the balls of its axis. They are reported, but no limit applies to them. There is a
-/// ball around each vertex of the axis. Long edges and large triangles have further balls with interpolated radii (see
-/// sample_axis()). The spacing of these further balls is 1/200 of the solid's diagonal. If the square root of a
-/// 50,000th of the axis's area is larger, the spacing is this root.
+/// Distances between a solid and the balls of its axis. The certificate reports these distances, but sets no limit for
+/// them. There is a ball around each vertex of the axis. Long edges and large triangles have further balls with
+/// interpolated radii (see sample_axis()). The spacing of these further balls is 1/200 of the solid's diagonal. If the
+/// square root of 1/50,000 of the axis's area is larger, this root is the spacing.
 struct BallUnionCheck {
   /// Largest distance of a sample of the solid's surface from the union of the balls. The vertices of a mesh are among
   /// the samples. If the axis has no balls, the value is the diagonal of the solid.
   double solid_to_balls = 0;
   double mean_solid_to_balls = 0;  ///< Mean of the distance in `solid_to_balls` over the surface's area.
   /// Largest distance by which a ball around a vertex reaches out of the solid. For one ball, this is the radius minus
-  /// the vertex's exact distance from the surface. The distance counts as negative if the vertex is outside the solid.
-  /// The result is 0 if all radii are exact.
+  /// the vertex's exact distance from the surface. The distance is negative if the vertex is outside the solid. The
+  /// result is 0 if all radii are exact.
   double balls_beyond_solid = 0;
-  /// Largest distance of the surface of the union of the balls from the surface of the solid. It is measured at 32
-  /// points of each ball. If there are 3,125 balls or more, only every n-th ball is measured. The number n is chosen so
-  /// that 1,563 to 3,125 balls are measured.
+  /// Largest distance of the surface of the union of the balls from the surface of the solid. The distance is measured
+  /// at 32 points of each ball. If there are 3,125 balls or more, only every n-th ball is measured. The number n is
+  /// chosen so that 1,563 to 3,125 balls are measured.
   double balls_to_surface = 0;
   /// Largest distance of a point of the surface from the closest sample, mesh units. For a mesh, the step is the
   /// smaller of two lengths: the median length of the axis's edges, and 1/256 of the solid's diagonal. The step is
-  /// larger if too many samples would be needed: more than 50,000 and more than the mesh has triangles. For voxels,
+  /// larger if this step would need more than 50,000 samples and more samples than the mesh has triangles. For voxels,
   /// each face between the solid and the background has one or four samples. If there are more than 250,000 faces, each
   /// block of 4 x 4 x 4 voxels has one sample for each direction of faces.
   double step = 0;
@@ -249,30 +249,30 @@ struct Description<BallUnionCheck> {
 
 /// Result of the check that an axis lies in the middle of its solid, and that no part of the axis is missing.
 ///
-/// Judged cells are triangles and edges of curves. Their separation angle, as stored in the axis, is above theta. If
-/// the solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All
-/// other cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
+/// Judged cells are the triangles, and the edges of curves, whose separation angle in the axis is above theta. If the
+/// solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All other
+/// cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
 ///
 /// The check uses sample points, which are the same in every run. There are at most 8,192 points of sheets, 2,048
 /// points of curves, 4,096 vertices and 16,384 points of the solid. All small sheets together have up to 4,096 further
 /// points. All bodies together have up to 32,768 further points.
 ///
 /// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If this side is
-/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no side, the unit is 1/32
-/// of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
-/// diagonal of a voxel. The axis also reports its deviation (DecimatedAxis::deviation), which counts as at most 1/64 of
-/// the diagonal of the solid.
+/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no voxel side, the unit is
+/// 1/32 of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
+/// diagonal of a voxel. The rules also use the deviation that the axis reports (DecimatedAxis::deviation). A deviation
+/// above 1/64 of the diagonal of the solid is lowered to this value.
 ///
-/// The first rule judges how far the axis is from the middle. At a point of the axis, the ball that touches the closest
-/// wall is grown until it touches another wall. The distance of the point from the middle is its distance from the
-/// bisector of the two walls. Two walls count as one wall if the angle between their touching points, at the ball's
-/// centre, is below 10 degrees (images: 20).
+/// The first rule judges how far the axis is from the middle between two walls, which are parts of the solid's surface.
+/// At a point of the axis, the ball that touches the closest wall is grown until it touches another wall. The distance
+/// of the point from the middle is its distance from the bisector of the two walls. If the touching points differ by
+/// less than 10 degrees (images: 20), seen from the ball's centre, they belong to the same wall.
 ///
 /// Three limits apply to the distances of the points from the middle. For at least 95 % of the points, the distance
-/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 %, it must also be at most a quarter
-/// of the radius of the point's ball. For at least half, it must be at most an eighth of this radius, and at most
-/// `close_allowance`. This last length is a third of a voxel, or the deviation plus a twelfth of a voxel if that is
-/// more.
+/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 % of the points, the distance must
+/// also be at most a quarter of the radius of the point's ball. For at least half of the points, the distance must be
+/// at most an eighth of this radius, and at most `close_allowance`. The length `close_allowance` is a third of a voxel,
+/// or the deviation plus a twelfth of a voxel if that is more.
 ///
 /// Two rules raise the limits that depend on the radius. If a corner of the point's cell has a larger radius than the
 /// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So these limits are at least a tenth
@@ -287,8 +287,8 @@ struct Description<BallUnionCheck> {
 /// The second rule judges vertices with one footprint. Vertices of judged cells should have two footprints, but some
 /// have only one, at ends of sheets and in thin walls. A vertex with one footprint must lie within the allowance from
 /// the middle, and within a quarter of its ball's radius from the middle. A vertex is exempt if one of its judged cells
-/// has a corner with a radius below one voxel. This limit may be exceeded by at most a tenth of the vertices of judged
-/// cells, or by 16 vertices if that is more.
+/// has a corner with a radius below one voxel. At most a tenth of the vertices of judged cells, or 16 vertices if that
+/// is more, may exceed this limit.
 ///
 /// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of such a cell,
 /// and the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that
@@ -297,14 +297,14 @@ struct Description<BallUnionCheck> {
 /// 256 square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
 ///
 /// The third rule finds missing parts of the axis. Balls are grown from random points of the solid. In each body,
-/// further balls are grown from points next to the body's surface. If the solid consists of voxels, these points lie in
-/// the body's box instead. If theta is unknown, missing parts are not checked.
+/// further balls are grown from points next to the body's surface. If the solid consists of voxels, the further balls
+/// are grown from points in the body's box instead. If theta is unknown, missing parts are not checked.
 ///
-/// A ball counts if it touches two walls at points at least lambda apart, and the angle between these points, at its
-/// centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is
-/// less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the two
-/// points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls with
-/// such close points never count.
+/// A ball counts if it touches two walls at points that are at least lambda apart, and its separation angle is large.
+/// This angle is the angle between the two points, seen from the ball's centre. It must be at least theta plus 30
+/// degrees, or halfway from theta to 180 degrees if that is less. In this rule, a theta below 10 degrees (images: 20)
+/// is raised to this value. If the distance between the two points is below 4 voxels plus lambda, the angle must also
+/// be at least 80 degrees. If the solid consists of voxels, balls whose two points are that close never count.
 ///
 /// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
 /// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
@@ -312,19 +312,21 @@ struct Description<BallUnionCheck> {
 ///
 /// This condition must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %). The further
 /// balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more further balls
-/// that count, the condition must hold for half of them. If it fails for more than 10 % of these balls in all bodies
-/// together, it must hold for 90 % of them in each body. In any case, the condition may fail for three balls.
+/// that count, the condition must hold for half of them. If the condition fails for more than 10 % of the further balls
+/// of all bodies, it must hold for 90 % of them in each body. Three balls may always fail the condition, in the whole
+/// solid and in each body.
 ///
-/// If borders were fitted, parts thinner than a voxel are also judged by their own radius. A ball counts if its radius
-/// is at most two thirds of a voxel, and its angle at least 150 degrees and `sought_angle`. No ball beside it may be
-/// larger by more than 5 %. The axis must come within three radii of its centre, except for one ball. So a missing end
-/// of a wire is found if it is longer than that. Such balls are also grown from vertices of the surface.
+/// If borders were fitted, the check also judges parts of the solid that are thinner than a voxel. The limits then
+/// depend on the radius in these parts. A ball counts if its radius is at most two thirds of a voxel, and its angle at
+/// least 150 degrees and `sought_angle`. No ball beside it may be larger by more than 5 %. For all of these balls
+/// except one, the axis must come within three radii of the ball's centre. So the check finds a missing end of a wire
+/// if this end is longer than three radii. Balls for this rule are also grown from vertices of the surface.
 ///
-/// In polyhedra, single sheets must not be missing either. Walls are flat or smooth parts of the surface. Two walls
-/// count if more than 8 balls touch both. More than 6 of the balls must have centres that are 2 voxels apart from each
-/// other. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180 degrees.
-/// Their radius is above `missing_allowance`. Half of them must be next to a cell of the axis between these walls
-/// (docs/theory/certificate.md).
+/// In polyhedra, the check also finds single sheets that are missing. For this rule, walls are flat or smooth parts of
+/// the surface. A pair of walls is judged if more than 8 balls touch both walls. More than 6 of the balls must have
+/// centres that are 2 voxels apart from each other. The separation angle of these balls is at least theta plus 10
+/// degrees, or halfway from theta to 180 degrees if that is less. Their radius is above `missing_allowance`. Half of
+/// the balls must be next to a cell of the axis that lies between the two walls (docs/theory/certificate.md).
 ///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
 /// but not judged.
@@ -332,8 +334,8 @@ struct MedialCheck {
   double allowance = 0;              ///< Largest accepted distance from the middle, mesh units.
   std::size_t one_wall = 0;          ///< Vertices with one footprint, or with two at an angle below 5 degrees.
   std::size_t claimed_vertices = 0;  ///< Vertices of judged cells.
-  /// Vertices of judged cells with one footprint that are further from the middle than allowed, and not exempt. If many
-  /// vertices have one footprint, only a sample of them is examined.
+  /// Vertices of judged cells with one footprint that exceed the limit for the distance from the middle, and are not
+  /// exempt. If many vertices have one footprint, only a sample of them is examined.
   std::size_t one_wall_off = 0;
   std::size_t one_wall_far = 0;   ///< Vertices among `one_wall_off` that violate the stricter limit.
   Vec3d far_at;                   ///< Position of the first vertex of `one_wall_far`, mesh units.
@@ -341,24 +343,24 @@ struct MedialCheck {
   std::size_t deep_one_wall = 0;  ///< Vertices among `deep_vertices` with one footprint.
   /// Area of the triangles that are not judged, as a share of the area of all triangles.
   double homotopy_share = 0;
-  std::size_t samples = 0;          ///< Examined points of sheets and curves.
-  double medial_share = 1;          ///< Share of samples within the allowance, by area. A curve counts as a voxel wide.
-  double near_share = 1;            ///< Share of samples within the allowance and a quarter of the ball's radius.
-  double close_share = 1;           ///< Share of samples within `close_allowance` and an eighth of the ball's radius.
-  double close_allowance = 0;       ///< A third of a voxel, or deviation plus a twelfth of a voxel if more, mesh units.
-  double off_by = 0;                ///< Largest distance of a sample from the middle of two walls, mesh units.
-  Vec3d off_at;                     ///< Position of the sample at that distance, mesh units.
-  std::size_t sheets_judged = 0;    ///< Sheets that were judged one by one; 0 if the solid consists of voxels.
-  std::size_t sheets_off = 0;       ///< Judged sheets with more than half of their points outside the allowance.
-  Vec3d sheet_off_at;               ///< Position of a point outside the allowance in the first such sheet, mesh units.
-  double sought_angle = 0;          ///< Least angle of balls that count, degrees; 0 if missing parts were not checked.
-  double missing_allowance = 0;     ///< Largest accepted distance of a ball's centre from the axis, mesh units.
-  std::size_t balls = 0;            ///< Balls from random points of the solid that count.
-  double missed_share = 0;          ///< Share of `balls` without a point of the axis near their centres.
-  double missed_by = 0;             ///< Largest distance of the centre of one of `balls` from the axis, mesh units.
-  Vec3d missed_at;                  ///< Centre of the ball at that distance, mesh units.
-  std::size_t bodies_unseen = 0;    ///< Bodies in which fewer than 20 balls count. They are not judged.
-  std::size_t bodies_missed = 0;    ///< Judged bodies in which too many balls have no point of the axis nearby.
+  std::size_t samples = 0;  ///< Examined points of sheets and curves.
+  double medial_share = 1;  ///< Share of samples within the allowance, by area, with curves as strips one voxel wide.
+  double near_share = 1;    ///< Share of samples within the allowance and a quarter of the ball's radius.
+  double close_share = 1;   ///< Share of samples within `close_allowance` and an eighth of the ball's radius.
+  double close_allowance = 0;     ///< A third of a voxel, or deviation plus a twelfth of a voxel if more, mesh units.
+  double off_by = 0;              ///< Largest distance of a sample from the middle of two walls, mesh units.
+  Vec3d off_at;                   ///< Position of the sample at that distance, mesh units.
+  std::size_t sheets_judged = 0;  ///< Sheets that were judged one by one; 0 if the solid consists of voxels.
+  std::size_t sheets_off = 0;     ///< Judged sheets with more than half of their points outside the allowance.
+  Vec3d sheet_off_at;             ///< Position of a point outside the allowance in the first such sheet, mesh units.
+  double sought_angle = 0;        ///< Smallest angle of balls that count, degrees; 0 if missing parts were not checked.
+  double missing_allowance = 0;   ///< Largest accepted distance of a ball's centre from the axis, mesh units.
+  std::size_t balls = 0;          ///< Balls from random points of the solid that count.
+  double missed_share = 0;        ///< Share of `balls` without a point of the axis near their centres.
+  double missed_by = 0;           ///< Largest distance of the centre of one of `balls` from the axis, mesh units.
+  Vec3d missed_at;                ///< Centre of the ball at that distance, mesh units.
+  std::size_t bodies_unseen = 0;  ///< Bodies in which fewer than 20 balls count. They are not judged.
+  std::size_t bodies_missed = 0;  ///< Judged bodies in which too many balls have no point of the axis nearby.
   double missed_share_of_body = 0;  ///< As `missed_share`, for the balls of the body with the largest share.
   /// Largest distance of the centre of a ball of that body from the axis, mesh units.
   double missed_in_body_by = 0;
@@ -464,8 +466,8 @@ struct TriangleCheck {
   std::size_t outside = 0;    ///< Triangles that leave the body by more than the allowance.
   double outside_by = 0;      ///< Largest distance of a point of triangles in `outside` from the body, mesh units.
   Vec3d where;                ///< Point at the distance `outside_by`, mesh units.
-  /// Triangles in very thin walls for which 512 examined points give no decision. If 512 would not suffice, only 64
-  /// points are examined.
+  /// Triangles in very thin walls for which 512 examined points give no decision. After 64 points, the examination ends
+  /// if an estimate shows that 512 points would not suffice.
   std::size_t undecided = 0;
   double tolerance = 0;  ///< EdgeCheck::tolerance, mesh units.
   double allowance = 0;  ///< Allowance in the largest body, mesh units.
@@ -500,7 +502,7 @@ struct Description<TriangleCheck> {
 /// Two sheets may share such an edge only if one of its ends lies on a seam. At these edges, the axis may label the two
 /// triangles as one sheet or as two. No violation is accepted.
 struct LabelCheck {
-  std::size_t doubled = 0;       ///< Edges with the same vertices as another edge, and likewise triangles.
+  std::size_t doubled = 0;       ///< Edges and triangles with the same vertices as another edge or triangle.
   std::size_t inner_listed = 0;  ///< Listed edges that belong to two triangles.
   std::size_t unlisted = 0;      ///< Edges of one triangle, or of three or more, that are not listed.
   std::size_t edge_roles = 0;    ///< Edges with a wrong role.
@@ -518,7 +520,7 @@ struct Description<LabelCheck> {
   static constexpr std::string_view doc = "Check that roles and sheets fit the triangles";
   static constexpr std::tuple members{
       Member{"doubled", &LabelCheck::doubled, "",
-             "edges with the same vertices as another edge, and likewise triangles"},
+             "edges and triangles with the same vertices as another edge or triangle"},
       Member{"inner_listed", &LabelCheck::inner_listed, "", "listed edges that belong to exactly two triangles"},
       Member{"unlisted", &LabelCheck::unlisted, "", "edges of rims and seams that are not listed"},
       Member{"edge_roles", &LabelCheck::edge_roles, "", "edges with a wrong role"},
@@ -592,16 +594,17 @@ struct Description<AngleCheck> {
 };
 
 /// Result of the check of sheets against the walls of a polyhedron (docs/theory/certificate.md). A part of a sheet is
-/// large if it has 4 square voxels and 8 triangles or more. Edges that bend by less than 45 degrees, or do not touch a
-/// seam, join triangles to parts. Large parts of a sheet must not lie between different pairs of walls. At most 5 % of
-/// `vertices` may be `wrong`, or 3 if that is more. Files of Voronoi diagrams may have columns of patches. Then each
-/// pair of sites, and each sheet of patches, must have one pair of patches.
+/// large if its area is at least 4 square voxels and it has at least 8 triangles. Triangles belong to the same part if
+/// the edge between them bends by less than 45 degrees, or does not touch a seam. All large parts of a sheet must lie
+/// between the same pair of walls. At most 5 % of `vertices`, or 3 vertices if that is more, may be `wrong`. Files of
+/// Voronoi diagrams may have columns of patches. If they do, each pair of sites, and each sheet of patches, must have
+/// one pair of patches.
 struct SheetCheck {
   std::size_t sheets = 0;     ///< Sheets with two large parts that only edges next to seams join.
   std::size_t two_pairs = 0;  ///< Sheets among `sheets` that lie between two pairs of walls. None is accepted.
   Vec3d two_pairs_at;         ///< Point in the first such sheet, mesh units.
   std::size_t vertices = 0;   ///< Vertices inside the part of a sheet for which the file states one pair of sites.
-  std::size_t wrong = 0;      ///< Vertices among `vertices` with a footprint on neither of these sites.
+  std::size_t wrong = 0;      ///< Vertices among `vertices` with a footprint on neither of the two sites.
   Vec3d wrong_at;             ///< Position of the first such vertex, mesh units.
   bool holds = false;         ///< True if no limit is exceeded.
 };
@@ -622,8 +625,8 @@ struct Description<SheetCheck> {
   };
 };
 
-/// Parts that a certificate checks besides the numbers of components, tunnels and voids. A part should be off if the
-/// file of the axis lacks its data. If a part is off, parts that need it are not checked either.
+/// Parts that a certificate checks besides the numbers of components, tunnels and voids. Switch a part off if the file
+/// of the axis lacks its data. The parts that need this part are then not checked either.
 struct CertificateOptions {
   /// Positions of vertices and edges. If this is off, only the Betti numbers of the whole solid and the whole axis are
   /// compared.
@@ -640,8 +643,9 @@ struct CertificateOptions {
   std::optional<double> lambda = {};     ///< Mesh units.
   std::optional<double> spacing = {};    ///< Side of a voxel, mesh units.
   std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units.
-  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). Then MedialCheck also judges parts
-  /// thinner than a voxel, by the radius there. Otherwise, borders may end up to two voxels early.
+  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). If true, MedialCheck also judges parts
+  /// thinner than a voxel, by the radius in these parts. If false, the axis may stop two voxels short of its exact
+  /// border.
   bool fitted = false;
 };
 
@@ -760,8 +764,8 @@ struct Description<MeshSolidRule> {
 /// vertex. Linking and winding numbers prove that loops and closed surfaces of the axis go around the tunnels and voids
 /// of their body (HomologyCheck).
 /// @throws InvalidMesh if the mesh is not closed and manifold, or if it has crossings that resolve_crossings() cannot
-/// resolve. Also if a shell encloses no volume, or exactly the same volume as another shell. InvalidOption if the
-/// complex is invalid (see homology()) or lacks a column of MedialView; Cancelled.
+/// resolve. It is also thrown if a shell encloses no volume, or exactly the same volume as another shell. InvalidOption
+/// if the complex is invalid (see homology()) or lacks a column of MedialView; Cancelled.
 /// Cost: about 2 s on one core for an axis with 100,000 vertices and a mesh with 100,000 triangles.
 [[nodiscard]] Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options = {},
                                   const Context& context = {});

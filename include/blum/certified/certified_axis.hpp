@@ -51,8 +51,8 @@ struct CertifiedAxis {
   DecimatedAxis axis;
   MedialMetadata metadata;  ///< As AxisCandidate::metadata.
   Certificate certificate;  ///< May fail in results of certified_axes(): check Certificate::holds().
-  /// Reasons why better forms are not used (WarningCode::form_not_certified). Empty if the best form is certified. Also
-  /// empty if no form is certified. In that case, `certificate` contains the mismatches of the last form.
+  /// Reasons why better forms are not used (WarningCode::form_not_certified). Empty if the best form is certified, or
+  /// if no form is certified. If no form is certified, `certificate` contains the mismatches of the last form.
   std::vector<Warning> warnings;
 };
 
@@ -87,11 +87,12 @@ struct AxisGrids {
 /// thin, a form may fail although the next form is certified. The fourth form has the full detail of the grid's cells.
 /// The other forms are easier to view.
 ///
-/// Walls much thinner than a voxel may be represented badly on one grid and well on another. So the grid is moved by a
-/// fraction of a voxel if some axis is not certified in any form, although model_problems() reports no problem. At most
-/// three other grids are tried. The grid with the fewest mismatches is kept.
+/// Walls much thinner than a voxel may be represented badly on one grid and well on another. If an axis is not
+/// certified in any form, the function moves the grid by a fraction of a voxel and tries again. It does this only if
+/// model_problems() reports no problem. At most three other grids are tried. The grid with the fewest mismatches is
+/// kept.
 /// @throws InvalidOption if an option is out of range. Also the exceptions of `make`, `certify`, MedialAxis::lean(),
-/// decimate() and prune_sheets(). An axis that is not certified is not an error: check holds().
+/// decimate() and prune_sheets(). Nothing is thrown if an axis is not certified: check holds().
 /// Cost: one call of `make` for each grid, and one call of `certify` for each grid, angle and form. In most cases, one
 /// grid and one form are enough.
 [[nodiscard]] CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify,
@@ -122,8 +123,8 @@ struct AxisGrids {
                                            std::optional<double> tolerance = {}, const Context& context = {});
 
 /// Certifies an axis that was made in another way, for example from a Voronoi complex. Returns the axis with few
-/// vertices if this form is certified; otherwise, returns the axis with all vertices. An axis that is not certified is
-/// not an error.
+/// vertices if this form is certified; otherwise, returns the axis with all vertices. Nothing is thrown if the axis is
+/// not certified: check Certificate::holds().
 /// @param whole      axis with all vertices.
 /// @param metadata   metadata of that axis; warnings mention its theta.
 /// @param tolerance  as in CertifiedAxisOptions, but without a default; 0 keeps all vertices.

@@ -23,12 +23,12 @@ struct MedialMetadata {
   std::optional<double> spacing = {};  ///< Smallest side of a voxel, mesh units.
   /// DecimatedAxis::deviation, >= 0, mesh units; unset if no vertices were removed.
   std::optional<double> deviation = {};
-  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). Then ends in parts thinner than a voxel
-  /// are judged by the radius there.
+  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). If true, certificates judge the ends of
+  /// the axis in parts thinner than a voxel by the radius in these parts.
   bool fitted = false;
   /// Rule of the solid to which the topology refers: "polyhedron", "winding" or "voxels" (SolidRule).
   std::string solid_rule = {};
-  /// Grid of the voxel centres. Needed for SolidRule::winding, where the solid consists of voxels.
+  /// Grid of the voxel centres. Needed if the rule is SolidRule::winding, because the solid then consists of voxels.
   std::optional<GridSpec> grid = {};
   // Selection of the solid in its file. In an image, `label` or `threshold` selects the voxels; at most one of the two
   // is set. If neither is set, all voxels that are not 0 are selected. `weld` is used for meshes.

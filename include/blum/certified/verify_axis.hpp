@@ -31,8 +31,8 @@ struct MedialClaims {
   bool has_labels = true;
 };
 
-/// Error if a mesh does not bound a polyhedron. In this case, voxels represent the solid, but the file of the axis does
-/// not give the grid of these voxels.
+/// Error if a mesh does not bound a polyhedron, and the file of the axis does not give a grid. The solid then consists
+/// of voxels, whose grid is unknown.
 class UnknownVoxels : public InvalidMesh {
  public:
   explicit UnknownVoxels(const std::string& reason)
@@ -46,18 +46,18 @@ class UnknownVoxels : public InvalidMesh {
   std::string reason_;
 };
 
-/// Returns one sentence for each false claim. A claim is false in these cases: The file gives another rule than
-/// `found`. The file gives sides of voxels that differ from those of the image. For the voxels of a mesh, the spacing
-/// in the file differs from the steps of the grid in the file. The file says that Blum wrote it, but lacks data that
-/// Blum always writes, or has sites of another kind of solid.
+/// Returns one sentence for each false claim. A claim is false if the rule in the file differs from `found`. A claim is
+/// false if the sides of voxels in the file differ from those of the image. For the voxels of a mesh, the spacing in
+/// the file must equal the steps of the grid in the file. A file that states that Blum wrote it must contain all data
+/// that Blum always writes, and sites of the solid's kind.
 /// @param found  actual rule of the solid.
 /// @param image_grid  grid of the voxels' centres for an image, else nullptr.
 [[nodiscard]] std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found,
                                                     const GridSpec* image_grid);
 
 /// Certifies axes of a mesh, and checks the claims of their files. The verifier reads the mesh only once
-/// (AxisVerifier). If the mesh does not bound a polyhedron, the voxels are computed once for consecutive axes with the
-/// same grid. Many threads may use one object at the same time.
+/// (AxisVerifier). If the mesh does not bound a polyhedron, its solid consists of voxels. They are computed once for
+/// consecutive axes with the same grid. Many threads may use one object at the same time.
 class MeshAxisVerifier {
  public:
   /// @param mesh  must stay unchanged while the verifier exists.

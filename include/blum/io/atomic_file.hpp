@@ -10,12 +10,12 @@ namespace blum {
 
 /// Writes a file so that no reader ever finds an incomplete file under its name.
 ///
-/// The bytes are written to a temporary file in the same directory. Then commit() flushes it to the disk and renames
-/// it, so that it replaces the target. If commit() is not called, the temporary file is removed and an existing target
-/// is unchanged. The new file gets the permissions of the replaced file, and its owner and group if the system allows
-/// it. If the target is a symbolic link, the link stays, and the file that it points to is replaced or created. A
-/// target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly, and cannot be restored. A
-/// target that is a directory, or that may not be written, is rejected at once.
+/// The bytes are written to a temporary file in the same directory. Then commit() flushes this file to the disk and
+/// renames it, so that it replaces the target. If commit() is not called, the temporary file is removed and an existing
+/// target is unchanged. The new file gets the permissions of the replaced file, and its owner and group if the system
+/// allows it. If the target is a symbolic link, the link is kept, and the file that the link points to is replaced or
+/// created. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly, and cannot be
+/// restored. A target that is a directory, or that may not be written, is rejected at once.
 ///
 /// Small writes are collected in a buffer of 256 KiB. Several threads must not use an object at the same time.
 class AtomicFile {
@@ -40,7 +40,7 @@ class AtomicFile {
   /// @throws FileError in the same cases as commit().
   void finish();
 
-  /// Makes the file appear under its name, with everything that was written. May be called once.
+  /// Makes the file appear under its name, with all bytes that were written. May be called once.
   /// @throws FileError if this call or an earlier write failed. The target is then unchanged, unless it is written
   /// directly.
   void commit();

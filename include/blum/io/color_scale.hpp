@@ -24,16 +24,17 @@ inline constexpr Color nothing_color{0.80F, 0.80F, 0.80F};
 /// Map from values to colours.
 class ColorScale {
  public:
-  /// Returns a scale that is light at `lowest` and below, and dark at `highest` and above. Both must be finite.
+  /// Returns a scale that is light at `lowest` and below, and dark at `highest` and above. Both values must be finite.
   [[nodiscard]] static ColorScale sequential(double lowest, double highest);
   /// Returns a scale that is light at zero, deep orange at `lowest` and deep blue at `highest`. Values below and above
   /// zero are scaled separately, so that small depths are visible beside large distances. The two scales differ by at
-  /// most a factor of four, so a much shorter side does not reach its deepest colour.
+  /// most a factor of four. So if the range on one side of zero is much shorter, this side does not reach its deepest
+  /// colour.
   [[nodiscard]] static ColorScale diverging(double lowest, double highest);
 
   /// Returns the position of a value on the scale: 0 to 1, or -1 to 1 if the scale is diverging. NaN stays NaN.
   [[nodiscard]] double place(double value) const;
-  /// Returns the colour of a value; nothing_color if it is not finite.
+  /// Returns the colour of a value; nothing_color if the value is not finite.
   [[nodiscard]] Color color(double value) const;
   /// Returns the colour at a position on the scale.
   [[nodiscard]] Color color_at(double place) const {

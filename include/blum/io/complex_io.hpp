@@ -35,7 +35,7 @@ struct ComplexFile {
 };
 
 struct ComplexWriteOptions {
-  /// True: columns and metadata that the format cannot hold are left out (.obj cannot hold any). False: they are
+  /// If true, columns and metadata that the format cannot hold are left out; .obj can hold none. If false, they are
   /// rejected.
   bool allow_loss = false;
   std::vector<NamedComplexRef> further = {};  ///< complexes in addition to the first, only for .npz files; their names
@@ -101,9 +101,9 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 /// @throws OutOfMemory.
 [[nodiscard]] ComplexFile read_complex(const std::filesystem::path& path);
 
-/// Return true if files with the extension of a path are read as complexes. The files must also be able to hold columns
-/// (may_hold_columns()), or further complexes (may_hold_further()). If a file's extension is not known, its first bytes
-/// decide about columns.
+/// Return true if files with the extension of a path are read as complexes, and can hold columns (may_hold_columns())
+/// or further complexes (may_hold_further()). For an unknown extension, may_hold_columns() examines the first bytes of
+/// the file.
 [[nodiscard]] bool may_hold_columns(const std::filesystem::path& path);
 [[nodiscard]] bool may_hold_further(const std::filesystem::path& path);
 

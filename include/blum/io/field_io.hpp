@@ -57,7 +57,7 @@ struct FieldFileInfo {
 /// OUT.nrrd as its field. If a field of order 1 replaces a field of order 2, the files of the second distances and
 /// second sites are removed, too.
 /// @throws InvalidOption for another extension.
-/// @throws FileError if the system refuses.
+/// @throws FileError if the system reports an error.
 /// @throws InvalidGrid if the field does not fit its grid.
 /// @throws InvalidMesh for .npz if validate() rejects the mesh, or if the mesh does not have all sites of the field.
 /// @throws Cancelled.

@@ -15,8 +15,8 @@ namespace blum {
 
 /// Returns the kind of content of a file. The extension decides, or the first bytes if the extension is not known. An
 /// .nrrd file is a field if it states that Blum wrote it as a field, else an image. An .npz file is a field unless it
-/// is a complex (see holds_complex()). Files of .ply and .obj are meshes. A pipe is read, and its bytes are kept until
-/// they are read as a whole.
+/// is a complex (see holds_complex()). Files of .ply and .obj are meshes. If the path names a pipe, the function reads
+/// the pipe and stores its bytes. The next function that reads the whole file gets the stored bytes.
 /// @throws FileError if the file cannot be opened, is a directory or has no known content.
 [[nodiscard]] FileContent content_of(const std::filesystem::path& path);
 
@@ -27,7 +27,7 @@ namespace blum {
 [[nodiscard]] bool holds_complex(const std::filesystem::path& path);
 
 /// Returns true if a file may be a field: it is a field written by Blum, or an .nrrd file of floating-point numbers.
-/// Such numbers may be distances that another program has written.
+/// The numbers in such an .nrrd file may be distances that another program computed.
 /// @throws FileError in the same cases as content_of().
 [[nodiscard]] bool may_hold_field(const std::filesystem::path& path);
 
@@ -36,8 +36,8 @@ namespace blum {
 [[nodiscard]] MeshFile read_mesh_of_any_name(const std::filesystem::path& path, const MeshReadOptions& options = {});
 [[nodiscard]] ImageFile read_image_of_any_name(const std::filesystem::path& path);
 
-/// Returns the name of an image's format: "NRRD", "NIfTI", "NPY", "Vol", or "unknown". It opens the file, so it must
-/// not be called after a pipe was read. ImageFile::format is the format of an image that was read.
+/// Returns the name of an image's format: "NRRD", "NIfTI", "NPY", "Vol", or "unknown". The function opens the file, so
+/// it must not be called for a pipe that was already read. For an image that was read, use ImageFile::format.
 [[nodiscard]] std::string_view image_format_name(const std::filesystem::path& path);
 
 /// Returns the paths of all files of a field that is written to a path. If the path is NAME.nrrd, the sites are in

@@ -60,7 +60,8 @@ struct GltfMesh {
 /// @throws InvalidMesh if a corner has the index of a missing vertex, or the mesh has more than 2^31 - 1 vertices. It
 /// is also thrown if a written position is not finite or beyond single precision.
 /// @throws InvalidOption if other members are not as described at GltfMesh and GltfAttribute.
-/// @throws FileError if the file would have more than 2^32 - 1 bytes, the limit of the format, or the system refuses.
+/// @throws FileError if the file would have more than 2^32 - 1 bytes, the limit of the format, or the system reports an
+/// error.
 /// @throws OutOfMemory, Cancelled.
 /// Cost: linear in the size of the input. Memory: three times the size of the file.
 void write_gltf(const std::filesystem::path& path, const GltfMesh& mesh, const Context& context = {});

@@ -16,11 +16,11 @@
 
 namespace blum {
 
-/// Image with what its reader noticed.
+/// Image, with the warnings and the format that its reader found.
 struct ImageFile {
   VoxelImage image = {};
-  /// The frames (positions of voxels) that the file states disagree, or one of them cannot be used. Each warning names
-  /// both frames, and the one that the image has (WarningCode::left_out).
+  /// Warnings that two frames (positions of voxels) in the file disagree, or that a frame cannot be used
+  /// (WarningCode::left_out). Each warning names both frames, and the frame that the image has.
   std::vector<Warning> warnings = {};
   std::optional<ImageFormat> format = {};  ///< format of the file; readers always set it
 };
@@ -74,7 +74,7 @@ struct ImageFile {
 /// Writes an image as .nrrd (raw data, with geometry and space) or .npy (values only), in the byte order of the
 /// machine. The file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension.
-/// @throws InvalidImage unless validate(image) passes.
+/// @throws InvalidImage if validate(image) rejects the image.
 /// @throws FileError.
 void write_image(const std::filesystem::path& path, const VoxelImageView& image);
 

@@ -22,7 +22,7 @@ struct ComplexFile;
 
 /// Content of a file of a medial axis.
 struct MedialFile {
-  Complex complex;  ///< with the columns of MedialView that the file holds; CompleteAxis adds the others
+  Complex complex;  ///< with the columns of MedialView that the file holds; CompleteAxis adds the missing columns
   MedialMetadata metadata;
   std::optional<Complex> nested = {};  ///< Axes of all angles, if the file holds them (.npz).
   double least_theta = 0;              ///< Least theta of `nested`, degrees.
@@ -61,9 +61,9 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
                   const Context& context = {});
 
 /// Writes a medial axis with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files can hold the
-/// axes of all angles. They are the further complex `nested`, with additional columns (float32). For a vertex or
-/// triangle, `until` is the theta at which it vanishes (inf: never). For an edge, `from` and `until` are the values of
-/// theta between which it has its role. `nested_theta` in the metadata is the least theta.
+/// axes of all angles. They are stored as the further complex `nested`, with additional columns (float32). For a vertex
+/// or triangle, `until` is the theta at which it vanishes (inf: never). For an edge, `from` and `until` are the values
+/// of theta between which it has its role. `nested_theta` in the metadata is the least theta.
 /// @throws InvalidOption for other formats.
 /// @param least_theta  MedialAxis::least_theta(), degrees.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
@@ -81,7 +81,8 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// @throws FormatError with the file and the reason.
 /// @throws InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
-/// Makes a medial axis from the content of a file that read_complex() has read. `name` is its name, for messages.
+/// Makes a medial axis from the content of a file that read_complex() has read. In messages, `name` is used as the name
+/// of the file.
 /// @throws FormatError with the name and the reason.
 [[nodiscard]] MedialFile read_medial(const ComplexFile& file, const std::string& name);
 /// Reads a medial axis from memory. In messages, `name` is used as the name of the file.

@@ -15,11 +15,11 @@
 namespace blum {
 
 struct MeshReadOptions {
-  /// Tolerance for merging vertices after reading (see weld()), in mesh units. 0: vertices at equal positions are
-  /// merged. Unset: vertices at equal positions are merged for STL, which has no shared vertices; other meshes are not
-  /// welded.
+  /// Tolerance for merging vertices after reading (see weld()), in mesh units. With 0, vertices at equal positions are
+  /// merged. If unset, vertices at equal positions are merged for STL, which has no shared vertices. Meshes of other
+  /// formats are then not welded.
   std::optional<double> weld = {};
-  /// True: if `weld` is above 0, MeshFile::exact is the mesh in which only vertices at equal positions are merged.
+  /// If true and `weld` is above 0, MeshFile::exact is the mesh in which only vertices at equal positions are merged.
   bool keeps_exact = false;
 };
 
@@ -57,10 +57,10 @@ struct MeshFile {
 ///
 /// A file with vertices and nothing else is a point cloud: every vertex is in `points`. Polygons are cut into
 /// triangles. A strictly convex polygon becomes a fan of triangles at its first corner. Other polygons are cut by ear
-/// clipping, projected along the coordinate axis nearest to their mean normal. The triangles are correct for every
-/// simple planar polygon, even if bridges join holes to its outline. If a polygon crosses itself, has no area, or needs
-/// too many steps, it becomes a fan. The limit is 500 steps per corner plus 2e8 steps per file. Triangles with the same
-/// vertex at two corners are kept, unless welding is requested.
+/// clipping, projected along the coordinate axis nearest to their mean normal. Ear clipping is correct for every simple
+/// planar polygon, even if bridges join holes to the polygon's outline. If a polygon crosses itself, has no area, or
+/// needs too many steps, it becomes a fan. The limit is 500 steps per corner plus 2e8 steps per file. Triangles with
+/// the same vertex at two corners are kept, unless welding is requested.
 ///
 /// Cost: O(file size) time and memory; the whole file is held in memory while it is read.
 /// @throws FileError if the file cannot be read, or its extension is not known.

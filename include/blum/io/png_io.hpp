@@ -27,8 +27,8 @@ struct PixelView {
 };
 
 /// Returns the bytes of a PNG file with 8 bits per channel. The same pixels give the same bytes.
-/// @throws InvalidOption if a size is beyond the limits, or the number of bytes does not match it.
-/// @throws FileError if libpng refuses.
+/// @throws InvalidOption if a size is beyond its limits, or the number of bytes does not match the size.
+/// @throws FileError if libpng reports an error.
 /// @throws OutOfMemory.
 /// Cost: about 80 ns per pixel, and memory for an uncompressed copy.
 [[nodiscard]] std::vector<std::byte> encode_png(const PixelView& pixels);

@@ -23,10 +23,10 @@ namespace blum {
 /// Colours and units for files of surface maps.
 struct SurfaceMapWriteOptions {
   /// Distances at the two ends of the colour scale of .png and .glb files. They must be finite, and the first less than
-  /// the second. If unset, the upper end is the largest finite distance. The lower end is 0. If the map is signed and
-  /// its smallest distance is negative, the lower end is this smallest distance. For thickness, the lower end is the
-  /// smallest thickness, or 0 if all are equal. If the upper end is not above the lower end, the upper end is set to
-  /// the lower end plus 1.
+  /// the second. The default upper end is the largest finite distance. The default lower end is 0. If the map is signed
+  /// and its smallest distance is negative, the default lower end is this smallest distance. For thickness, the default
+  /// lower end is the smallest thickness, or 0 if all values are equal. If the upper end is not above the lower end,
+  /// the upper end is set to the lower end plus 1.
   std::optional<std::pair<double, double>> range = {};
   /// Units of distances, for example "mm", for the colour bar and the metadata; may be empty.
   std::string units = {};
@@ -52,13 +52,13 @@ struct SurfaceMapWriteOptions {
 ///                   write_complex().
 ///
 /// Colours are those of ColorScale: diverging if the map is signed, else sequential. Texels of a triangle without a
-/// value are grey. Texels of no triangle get the colour of the closest chart if it is at most four texels away, else
-/// they are white. So interpolation at the borders of charts does not mix in other colours.
-/// @param metadata  further metadata, written before those of the map. Those of the map are `content` ("surface map"),
-///                  `quantity`, `units`, `sign_rule`, `sign_reason`, `range`, `largest_error`, and `separate_charts`
-///                  ("true" or "false", only in .npz). All are texts. `range` is the smallest and the largest finite
-///                  distance of texels. An entry in `metadata` replaces the entry of the map with the same key (in .glb
-///                  except `range`, `colors` and `color_range`).
+/// value are grey. Texels of no triangle get the colour of the closest chart if this chart is at most four texels away,
+/// else they are white. So interpolation at the borders of charts uses only colours of the chart.
+/// @param metadata  further metadata, written before the metadata of the map. The metadata of the map are `content`
+///                  ("surface map"), `quantity`, `units`, `sign_rule`, `sign_reason`, `range`, `largest_error`, and
+///                  `separate_charts` ("true" or "false", only in .npz). All are texts. `range` is the smallest and the
+///                  largest finite distance of texels. An entry in `metadata` replaces the entry of the map with the
+///                  same key (in .glb except `range`, `colors` and `color_range`).
 /// @throws InvalidOption for another extension, an invalid range, or metadata with an empty or repeated key.
 /// @throws InvalidOption in .npz if `metadata` has another quantity, sign rule or kind of charts than the map.
 /// @throws InvalidMesh if validate() rejects the mesh, or if the map belongs to another mesh, has no atlas, or has no

@@ -18,8 +18,8 @@ namespace blum {
 /// of a Voronoi diagram" if the surface is not included), `blum_version`, and `certified`. If the complex is certified,
 /// the metadata also contain `hausdorff_bound` (mesh units). Otherwise, the metadata contain `failing_cubes`, the
 /// number of cubes that fail the check.
-/// @param hausdorff_bound  the bound in VoronoiReport; nullopt if the complex is not certified. A bound of 0 is not
-/// known, and left out.
+/// @param hausdorff_bound  the bound in VoronoiReport; nullopt if the complex is not certified. The value 0 means that
+/// the bound is unknown; it is not written.
 [[nodiscard]] FileMetadata voronoi_metadata(VoronoiPart part, std::optional<double> hausdorff_bound,
                                             std::size_t failing_cubes, std::string_view version);
 

@@ -27,9 +27,9 @@ struct CentrelineOptions {
   /// Selected voxels. By default (`nonzero`), each value other than 0 is a label of its own, and all values must be
   /// whole numbers.
   LabelSelection selection = {};
-  /// Limit for the removal of branches with a free end (spurs). A spur is removed if it stays within
-  /// spur * radius + 1.5 voxels of its junction. Here, `radius` is the radius of the ball at this junction. If spur is
-  /// 1, removed branches leave the ball by at most 1.5 voxels. If spur is 0, only branches that stay within 1.5 voxels
+  /// Limit for the removal of branches with a free end (spurs). A spur is removed if it stays within spur * radius +
+  /// 1.5 voxels of its junction. Here, `radius` is the radius of the ball at this junction. If spur is 1, removed
+  /// branches leave the junction's ball by at most 1.5 voxels. If spur is 0, only branches that stay within 1.5 voxels
   /// are removed.
   double spur = 1;
 };
@@ -81,10 +81,10 @@ struct Description<CentrelineNode> {
 struct CentrelineBranch {
   std::array<std::int32_t, 2> nodes{-1, -1};  ///< Indices of its first and last node; -1 for closed curves.
   double length = 0;                          ///< Length of the polyline `points`, world units.
-  /// Mean of `radii` along the part of the branch that is at least 1.5 voxels away from the balls of its junctions. A
-  /// branch without such a part counts as a whole.
+  /// Mean of `radii` along the part of the branch that is at least 1.5 voxels away from the balls of its junctions. If
+  /// no part of the branch is that far away, the mean along the whole branch.
   double mean_radius = 0;
-  double min_radius = 0;  ///< Least of `radii` on the same part.
+  double min_radius = 0;  ///< Smallest of `radii` on the part of the branch that `mean_radius` uses.
   /// Polyline from the first to the last node. A closed curve ends with its first point.
   std::vector<Vec3d> points = {};
   /// For each point: radius of the circle that has the area of the cross-section there.
@@ -168,8 +168,8 @@ struct Centrelines {
 /// Returns warnings about the centrelines of an image with this grid. A warning may report that the image has a single
 /// layer of voxels (WarningCode::single_layer), or that a label has no voxels (WarningCode::nothing_found). It may also
 /// report that the topology of a label differs from that of the label's curves (WarningCode::other_topology). At most
-/// six warnings are returned. If more apply, the sixth warning gives the number of labels without a warning of their
-/// own.
+/// six warnings are returned. If more apply, the sixth warning gives the number of labels that have no separate
+/// warning.
 [[nodiscard]] std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid);
 
 /// Returns all branches as a complex, for files. An edge joins each point of a branch to the next point. Vertices have

@@ -36,19 +36,19 @@ struct MedialAxisOptions {
   std::optional<double> spacing = {};
   /// Meshes: largest number of voxels along the longest side of the box around a body, 8 to 800. If the cellular model
   /// of a body fails its test (see CellularModel) or has no cells, the side of the body's voxels is halved. Halving is
-  /// repeated up to this limit. If the limit is at most `resolution`, a body as large as the mesh is never computed
-  /// again.
+  /// repeated up to this limit. If the limit is at most `resolution`, a body as large as the mesh is computed only
+  /// once.
   int max_resolution = 512;
   /// Meshes: shift of the grid relative to the mesh along each axis of the grid, -1 to 1 voxels. Results for different
   /// shifts show how the axis depends on the position of the grid.
   double grid_shift = 0;
   /// Least distance between the two footprints of a point of the axis, mesh units: >= 0, at most the diagonal of the
-  /// solid's box. If footprints are closer, the separation angle counts as 0. (Lambda-medial axis of Chazal and
+  /// solid's box. If the footprints are closer, the separation angle is set to 0. (Lambda-medial axis of Chazal and
   /// Lieutier 2005.)
   double lambda = 0;
-  /// Smallest threshold theta of the separation angle that will be requested, 0 to 180 degrees. Separation angles below
-  /// it count as 0. This saves time if such angles are frequent. Cells that are kept only to preserve the homotopy type
-  /// may then lie elsewhere in the solid.
+  /// Smallest threshold theta of the separation angle that will be requested, 0 to 180 degrees. Smaller separation
+  /// angles are set to 0, which saves time if they are frequent. The position of cells that are kept only to preserve
+  /// the homotopy type may depend on this option.
   double least_theta = 0;
   /// Largest theta that will be requested, least_theta to 180 degrees. The order of collapses at larger angles is not
   /// computed. The axes that may be requested are the same with and without this limit. MedialAxis::nested() needs 180.
@@ -215,14 +215,15 @@ class MedialAxis {
 /// Computes the medial axis of a solid.
 ///
 /// Each sheet of a mesh's axis lies between two regions of the surface, which are flat or smooth. Regions are ordered
-/// by their first face in the mesh. Sheets are ordered by their lower region, then by the other region. Sheets between
-/// the same two regions are ordered by the distances of their centroids from vertices of the mesh. Sheets with less
-/// than a thousandth of the axis's total area come last. So numbers of sheets do not depend on the position of the
-/// mesh. The grid does not change the numbers either, if the same sheets are found. (docs/guide/medial-axes.md contains
-/// the full rule.) Sheets of an image's axis are numbered in the order of their first triangles.
+/// by their first face in the mesh. Sheets are ordered by the lower of the two region numbers, then by the higher
+/// number. Sheets between the same two regions are ordered by the distances of their centroids from vertices of the
+/// mesh. Sheets with less than a thousandth of the axis's total area come last. So numbers of sheets do not depend on
+/// the position of the mesh. The grid does not change the numbers either, if the same sheets are found.
+/// (docs/guide/medial-axes.md contains the full rule.) Sheets of an image's axis are numbered in the order of their
+/// first triangles.
 ///
-/// If two walls (parts of the surface around footprints) are found for a vertex, it lies on their bisector. Such a
-/// vertex is at most 0.7 voxels from a corner of the voxel lattice, along each axis of the grid. If no such point is
+/// If two walls (parts of the surface around footprints) are found for a vertex, the vertex lies on their bisector.
+/// Such a vertex is at most 0.7 voxels from a corner of a voxel, along each axis of the grid. If no such point is
 /// found, the vertex may lie elsewhere in the solid (docs/theory/medial-axis.md). The radius is the distance to the
 /// surface, exact to 1e-9 of the solid's extent.
 ///
@@ -231,9 +232,9 @@ class MedialAxis {
 /// the faces between selected voxels and voxels that are not selected. Sites of an image are the voxels on the far side
 /// of these faces. These voxels are not selected, or lie just outside the image. A voxel outside the image has the id
 /// of the image's voxel next to it.
-/// @throws InvalidMesh if no interior of a body is found (the message mentions triangles that face inwards). Also if
-/// the longest side of the box around the solid is below 5e-7 of its largest coordinate. InvalidOption; OutOfMemory;
-/// Cancelled.
+/// @throws InvalidMesh if no interior of a body is found (the message mentions triangles that face inwards). It is also
+/// thrown if the longest side of the box around the solid is below 5e-7 of the largest coordinate. InvalidOption;
+/// OutOfMemory; Cancelled.
 /// Cost: near-linear in the voxels of the solid; about 10 bytes of memory per voxel of the box around it.
 /// Method: docs/theory/medial-axis.md (Sud 2006, ch. 5; Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009).
 [[nodiscard]] MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options = {},

@@ -39,11 +39,14 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,  ///< If all bodies are convex: planes. Otherwise: seams are traced. Cubes if this fails or takes long, and
-              ///< if a tolerance is given: only cubes bound the distance from the exact diagram.
-  cubes,      ///< Cubes of an octree, each with a proof of its topology.
-  traced,     ///< If all bodies are convex: planes. Otherwise: seams are traced, which may take minutes. If it fails:
-              ///< cubes.
+  /// If all bodies are convex, planes are used. Otherwise, seams are traced. If tracing fails or takes long, cubes are
+  /// used. For bodies that are not convex, cubes are also used if a tolerance is given, because only cubes bound the
+  /// distance from the exact diagram.
+  automatic,
+  cubes,  ///< Cubes of an octree, each with a proof of its topology.
+  /// If all bodies are convex, planes are used. Otherwise, seams are traced, which may take minutes. If tracing fails,
+  /// cubes are used.
+  traced,
 };
 
 template <>
@@ -58,20 +61,21 @@ struct VoronoiOptions {
   /// Part of the diagram that the complex represents.
   VoronoiPart part = VoronoiPart::all;
   VoronoiMethod method = VoronoiMethod::automatic;
-  /// Planes and traces: triangles count as one face if their corners lie within this distance of one plane, >= 0, mesh
-  /// units. For traces, it is twice this distance. Junctions and seams of planes within 8 times this distance are
-  /// joined. 0 uses the mesh as given. If not given, it is 16 times the rounding error of the largest coordinate. The
-  /// error is that of the precision whose digits the longest coordinate fills. With up to 20 binary digits it is 0,
-  /// with 21 to 24 that of single precision. Cubes: ignored.
+  /// Planes and traces: triangles form one face if their corners lie within this distance of one plane, >= 0, mesh
+  /// units. For traces, twice this distance is allowed. Junctions and seams of planes within 8 times this distance are
+  /// joined. With 0, the mesh is used as given. Default: 16 times the rounding error of the largest coordinate. The
+  /// number of binary digits of the coordinates shows how they were rounded. For up to 20 digits, the error is 0. For
+  /// 21 to 24 digits, it is that of single precision. For more digits, it is that of double precision. Cubes: ignored.
   std::optional<double> flatness = {};
   /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
   /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Edges of traced medial axes are
   /// at most about as long as this limit. Planes: ignored.
   int resolution = 16;
   /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With this
-  /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of it.
+  /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of this
+  /// tolerance.
   std::optional<double> tolerance = {};
-  /// The options below only matter if cubes are used: they do not select cubes.
+  /// The options below apply only if cubes are used. To use cubes, set `method` or `tolerance`.
   /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
   /// `tolerance` requires them.
   int depth = 24;
@@ -154,9 +158,9 @@ struct Description<FailingVoronoiCell> {
 
 /// Reason why a junction or a piece of a seam is not proven.
 enum class VoronoiDoubt : std::uint8_t {
-  close,       ///< Other sites are nearly as close, or sites meet at angles that are too small.
-  degenerate,  ///< More sites are equally close than in general position, or their number is uncertain.
-  seams        ///< The number of seams at the junction is not that of general position.
+  close,       ///< Other sites are nearly as close as the closest sites, or sites meet at angles that are too small.
+  degenerate,  ///< More sites are equally close than in general position, or the number of these sites is uncertain.
+  seams        ///< The number of seams at the junction differs from that in general position.
 };
 
 template <>
@@ -170,7 +174,7 @@ struct Description<VoronoiDoubt> {
 /// Junction, or piece of a seam, of a traced diagram that is not proven.
 struct OpenVoronoiPlace {
   Vec3d position{};                  ///< Mesh units.
-  double size = 0;                   ///< Outside, all is proven. Mesh units.
+  double size = 0;                   ///< Size of the part that is not proven, mesh units.
   std::vector<std::uint32_t> sites;  ///< Closest sites, as in VoronoiComplex::complex, ascending.
   VoronoiDoubt doubt = VoronoiDoubt::close;
 };
@@ -180,71 +184,76 @@ struct Description<OpenVoronoiPlace> {
   static constexpr std::string_view name = "OpenVoronoiPlace";
   static constexpr std::string_view doc = "Junction, or piece of a seam, that is not proven";
   static constexpr std::tuple members{
-      Member{"position", &OpenVoronoiPlace::position, "mesh units", "of the place"},
-      Member{"size", &OpenVoronoiPlace::size, "mesh units", "of the place"},
+      Member{"position", &OpenVoronoiPlace::position, "mesh units", "position of the junction or piece"},
+      Member{"size", &OpenVoronoiPlace::size, "mesh units", "size of the part that is not proven"},
       Member{"sites", &OpenVoronoiPlace::sites, "", "numbers of the closest sites"},
       Member{"doubt", &OpenVoronoiPlace::doubt, "",
-             "close: other sites are nearly as close; degenerate: more sites than in general position; seams: not the "
-             "number of seams of general position"},
+             "close: other sites are nearly as close; degenerate: more sites than in general position; seams: another "
+             "number of seams than in general position"},
   };
 };
 
 struct VoronoiReport {
   /// True if every cube passes the test, no signs contradict each other, and the Betti numbers are the expected ones.
-  /// Then the complex provably has the homology of the requested part of the exact diagram. If exact or traced, there
-  /// are no cubes, and only the Betti numbers count.
+  /// Then the complex provably has the homology of the requested part of the exact diagram. If the diagram is exact or
+  /// traced, there are no cubes, and only the Betti numbers are checked.
   bool certified = false;
   /// True if all bodies are convex, and the method was not `cubes`. Then each sheet, seam and junction is that of the
   /// exact diagram of the bodies' planes. See VoronoiReport::flatness and VoronoiReport::joined.
   bool exact = false;
   double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
-  double joined = 0;    ///< If exact or traced: junctions and seams within this distance are one, mesh units.
+  double joined = 0;    ///< If exact or traced: junctions and seams within this distance are joined, mesh units.
   /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second,
   /// smaller one. Reflex edges and vertices inside a joined face are not sites, so they have no regions.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
-  /// True if the seams were traced (VoronoiMethod::traced). Then sheets, seams and junctions are those of the diagram
-  /// within `joined`, as far as checks show. All sheets are closed, and the complex has the expected Betti numbers.
+  /// True if the seams were traced (VoronoiMethod::traced). As far as checks show, the sheets, seams and junctions are
+  /// those of the diagram, except for details smaller than `joined`. All sheets are closed, and the complex has the
+  /// expected Betti numbers.
   bool traced = false;
-  /// If traced: each point of a wall with two footprints is at most this much farther from the wall's own sites than
-  /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
+  /// If traced: bound on the error of the sites of walls with two footprints, mesh units. The distance of a point of a
+  /// wall from the wall's sites exceeds its distance from the surface by at most this. A wall of the exact diagram that
+  /// the complex lacks cannot change distances by more.
   double label_error = 0;
   /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
   /// between vertices, mesh units.
   double chord = 0;
   /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
-  /// diagram of a flat polyhedron. Its corners are within `moved` of those of the mesh.
+  /// diagram of a polyhedron with flat faces. The corners of this polyhedron are within `moved` of the corners of the
+  /// mesh.
   bool proven = false;
-  /// If traced: largest move of a corner that makes the faces flat, mesh units. 0 if they are flat as
-  /// given, but for rounding.
+  /// If traced: largest displacement of a corner to make the faces flat, mesh units. 0 if the given faces are flat,
+  /// except for rounding.
   double moved = 0;
-  /// If traced: junctions inside the solid, and seams, of the whole diagram.
+  /// If traced: numbers of junctions inside the solid and of seams, in the whole diagram.
   std::size_t junctions = 0;
   std::size_t seams = 0;
-  /// If traced: junctions and seams that exist in this exact diagram as they were traced.
+  /// If traced: numbers of junctions and of seams that are proven. They exist, as traced, in the exact diagram of a
+  /// polyhedron with flat faces (see `proven`).
   std::size_t proven_junctions = 0;
   std::size_t proven_seams = 0;
-  /// If traced: places where the proof did not succeed. Each other junction is proven. A seam is open at one place.
-  /// Reflex vertices whose regions are thinner than 1e-7 of their lengths, and left out, are also open.
+  /// If traced: junctions and pieces of seams that are not proven. All other junctions are proven. For each seam that
+  /// is not proven, the list contains one piece. The list also contains reflex vertices that were left out, because
+  /// their regions are thinner than 1e-7 of their lengths.
   std::vector<OpenVoronoiPlace> open;
-  /// If tracing failed: the reason and the place, for each way that was tried. Close junctions were joined or kept
-  /// apart.
+  /// If tracing failed: the reason and the position, for each attempt. Some attempts join close junctions, others keep
+  /// them apart.
   std::string trace_problem;
   BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};     ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
-  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact, it
-  /// covers rounding and joined junctions. The exact diagram is then that of the planes, within `flatness` of the
-  /// corners. If traced, the bound is not known, and this is 0.
+  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact,
+  /// the bound includes rounding and joined junctions. The exact diagram is then that of the planes, within `flatness`
+  /// of the corners. If traced, the bound is unknown, and the value is 0.
   double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
   std::size_t reflex_vertices = 0;  ///< Reflex vertices among the sites.
   /// Reflex vertices whose dual cones (see polyhedron_sites()) are thinner than 1e-3 radians. The region of such a
-  /// vertex is a needle with a width below 1e-3 of its length, and counts as part of walls.
+  /// vertex is a needle with a width below 1e-3 of its length. The complex represents it as part of walls.
   std::size_t thin_vertices = 0;
   std::size_t grids = 0;              ///< Number of positions of the grid that were tried.
   std::size_t cubes = 0;              ///< Number of cubes that meet the solid, and are not split.
-  std::size_t squares = 0;            ///< Number of squares between cubes; of a split square, only the parts count.
+  std::size_t squares = 0;            ///< Number of squares between cubes; a split square is counted as its parts.
   std::size_t undecided_squares = 0;  ///< Number of `squares` whose borders do not determine the diagram in them.
   std::size_t splits = 0;             ///< Number of cubes that were split because they did not pass.
   int depth = 0;                      ///< Number of successive splits that led to the smallest cube.
@@ -253,7 +262,7 @@ struct VoronoiReport {
   /// the cube.
   double governors = 0;
   std::size_t lines = 0;            ///< Segments of grid lines in the solid along which closest sites were searched.
-  std::size_t exact_lines = 0;      ///< Number of `lines` that doubles did not decide.
+  std::size_t exact_lines = 0;      ///< Number of `lines` that needed exact arithmetic.
   std::size_t undecided_lines = 0;  ///< Number of `lines` that exact signs did not decide either.
   std::size_t contradictions = 0;   ///< Grid nodes with different closest sites on different grid lines.
   std::vector<FailingVoronoiCell> failing;
@@ -272,7 +281,7 @@ struct Description<VoronoiReport> {
       Member{"flatness", &VoronoiReport::flatness, "mesh units",
              "if exact or traced: bound on the distance of a triangle's corner from its face's plane"},
       Member{"joined", &VoronoiReport::joined, "mesh units",
-             "if exact or traced: junctions and seams within this distance are one"},
+             "if exact or traced: junctions and seams within this distance are joined"},
       Member{"joined_faces", &VoronoiReport::joined_faces, "",
              "pairs of faces: the first one was joined to the second one, since rounding bends them"},
       Member{"traced", &VoronoiReport::traced, "",
@@ -284,7 +293,7 @@ struct Description<VoronoiReport> {
       Member{"proven", &VoronoiReport::proven, "",
              "true if traced, and each sheet, seam and junction is proven to be that of the exact diagram"},
       Member{"moved", &VoronoiReport::moved, "mesh units",
-             "if traced: bound on the distance by which corners move so that faces are flat"},
+             "if traced: bound on the displacement of corners that makes the faces flat"},
       Member{"junctions", &VoronoiReport::junctions, "", "if traced: junctions of the whole diagram inside the solid"},
       Member{"seams", &VoronoiReport::seams, "", "if traced: seams of the whole diagram"},
       Member{"proven_junctions", &VoronoiReport::proven_junctions, "",
@@ -292,7 +301,8 @@ struct Description<VoronoiReport> {
       Member{"proven_seams", &VoronoiReport::proven_seams, "",
              "if traced: seams that are proven to exist in the exact diagram"},
       Member{"open", &VoronoiReport::open, "", "if traced: junctions and pieces of seams that are not proven"},
-      Member{"trace_problem", &VoronoiReport::trace_problem, "", "reason why tracing failed; empty if it did not"},
+      Member{"trace_problem", &VoronoiReport::trace_problem, "",
+             "reason why tracing failed; empty if it succeeded, or was not tried"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},
       Member{"found_betti", &VoronoiReport::found, "", "components, tunnels, voids of the complex"},
@@ -307,7 +317,7 @@ struct Description<VoronoiReport> {
              "reflex vertices whose dual cones are thinner than 1e-3 radians: their regions count as part of walls"},
       Member{"grids", &VoronoiReport::grids, "", "grid positions that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "cubes that meet the solid and are not split"},
-      Member{"squares", &VoronoiReport::squares, "", "squares between cubes; of a split square, only the parts count"},
+      Member{"squares", &VoronoiReport::squares, "", "squares between cubes; a split square is counted as its parts"},
       Member{"undecided_squares", &VoronoiReport::undecided_squares, "",
              "number of squares between cubes whose borders do not determine the diagram in them"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},
@@ -357,9 +367,9 @@ struct VoronoiComplex {
 ///
 /// If all bodies are convex, the diagram consists of planar polygons. The distance from the border is the least of the
 /// distances from the faces' planes, so its graph bounds a convex polytope in four dimensions. The facets, ridges,
-/// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which exist. Sheets
-/// are divided into triangles without further vertices, except one in the middle of some. (docs/theory/voronoi.md,
-/// "Convex solids".)
+/// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which of them
+/// exist. Sheets are divided into triangles. Some sheets get one further vertex in the middle for this.
+/// (docs/theory/voronoi.md, "Convex solids".)
 ///
 /// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between them are divided
 /// into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the solid is
@@ -379,7 +389,7 @@ struct VoronoiComplex {
 ///
 /// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
 /// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
-/// of the mesh. Cubes use triangles as given, so a face that rounding has bent counts as several sites.
+/// of the mesh. Cubes use triangles as given, so a face that rounding has bent becomes several sites.
 /// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
 /// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000

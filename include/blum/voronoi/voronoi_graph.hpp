@@ -38,11 +38,12 @@ struct Description<VoronoiWall> {
 
 /// Chain of edges along which regions of three or more sites meet.
 struct VoronoiSeam {
-  std::vector<std::int32_t> sites;       ///< Sites of the regions around it, ascending.
-  double length = 0;                     ///< Mesh units.
-  std::vector<std::uint32_t> walls;      ///< Indices of the walls that meet along the seam, ascending.
-  std::vector<std::uint32_t> junctions;  ///< Indices of the junctions at its ends, ascending: two; one if both ends
-                                         ///< meet in it; none if the seam is a closed line.
+  std::vector<std::int32_t> sites;   ///< Sites of the regions around the seam, ascending.
+  double length = 0;                 ///< Mesh units.
+  std::vector<std::uint32_t> walls;  ///< Indices of the walls that meet along the seam, ascending.
+  /// Indices of the junctions at the ends of the seam, ascending. The list has two entries, one entry if both ends
+  /// meet in one junction, and none if the seam is a closed line.
+  std::vector<std::uint32_t> junctions;
 };
 
 template <>
@@ -62,9 +63,9 @@ struct Description<VoronoiSeam> {
 struct VoronoiJunction {
   std::uint32_t vertex = 0;  ///< Index of its vertex in the complex.
   /// Position of the vertex, mesh units. Its error is at most VoronoiReport::hausdorff_bound. If the diagram is traced,
-  /// it is about VoronoiReport::joined.
+  /// its error is about VoronoiReport::joined.
   Vec3d position;
-  std::vector<std::int32_t> sites;   ///< Sites of the regions around it, ascending.
+  std::vector<std::int32_t> sites;   ///< Sites of the regions around the junction, ascending.
   std::vector<std::uint32_t> seams;  ///< Indices of the seams that end at the junction, ascending.
 };
 
@@ -82,14 +83,14 @@ struct Description<VoronoiJunction> {
 };
 
 /// Voronoi diagram as a graph of regions, walls, seams and junctions. Indices of walls, seams and junctions are
-/// positions in the lists below. In a graph of patches, `patches` is not empty. All numbers of sites in regions, walls,
-/// seams and junctions are then numbers of patches, positions in this list.
+/// positions in the lists below. In a graph of patches, `patches` is not empty. The sites of regions, walls, seams and
+/// junctions are then indices of patches in this list.
 struct VoronoiGraph {
   std::vector<VoronoiRegion> regions;      ///< By ascending site. Empty if the complex does not contain the surface.
   std::vector<VoronoiWall> walls;          ///< In the order of their first triangles.
   std::vector<VoronoiSeam> seams;          ///< In the order of their first edges.
   std::vector<VoronoiJunction> junctions;  ///< By ascending vertex.
-  std::vector<VoronoiPatch> patches;       ///< The patches, in a graph of patches. Otherwise empty.
+  std::vector<VoronoiPatch> patches;       ///< Patches of a graph of patches; otherwise empty.
 };
 
 template <>
@@ -102,7 +103,7 @@ struct Description<VoronoiGraph> {
       Member{"seams", &VoronoiGraph::seams, "", "chains of edges along which regions of three or more sites meet"},
       Member{"junctions", &VoronoiGraph::junctions, "", "points in which seams meet or end"},
       Member{"patches", &VoronoiGraph::patches, "",
-             "patches, if sites were joined: then numbers of sites above are positions in this list"},
+             "patches, if this is a graph of patches: the sites of all members above are then indices into this list"},
   };
 };
 
@@ -118,10 +119,11 @@ struct Description<VoronoiGraph> {
 /// Cost: O(n log n) for n triangles; about 1 us and 100 bytes per triangle.
 [[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, const Context& context = {});
 
-/// Returns the same graph for patches of sites: the sites of a patch count as one site. Walls between two sites of one
-/// patch are left out, even where distant parts of the patch face each other. Walls of neighbouring pairs of sites join
-/// if their pairs of patches are equal. A seam is left out if only two patches meet along it. A junction is left out if
-/// one seam passes it, and no further patch meets it. A closed seam may remain without a junction.
+/// Returns the graph of a diagram whose sites are patches: all sites of a patch are treated as one site. Walls between
+/// two sites of one patch are left out, even where distant parts of the patch face each other. Adjacent walls between
+/// different pairs of sites are joined if their pairs of patches are equal. A seam is left out if only two patches meet
+/// along it. A junction is left out if one seam passes it, and no further patch meets it. A closed seam may remain
+/// without a junction.
 /// @param patches  result of voronoi_patches() for the sites of the complex, or another division of these sites.
 /// @throws InvalidOption also if a site of the complex belongs to no patch, or to two.
 [[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, std::span<const VoronoiPatch> patches,

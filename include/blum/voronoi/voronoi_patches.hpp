@@ -22,8 +22,8 @@ namespace blum {
 struct VoronoiPatchOptions {
   /// Degrees. Faces form one patch if they are connected through edges that bend by at most this angle.
   double patch_angle = 30;
-  /// Mesh units. If set, a patch of faces is a connected part of a plane, sphere, cylinder or cone. Its vertices are at
-  /// most this far from the shape. Edges inside it bend by at most `patch_angle`.
+  /// Mesh units. If set, a patch of faces is a connected part of a plane, sphere, cylinder or cone. The vertices of a
+  /// patch are at most this far from its shape. Edges inside a patch bend by at most `patch_angle`.
   std::optional<double> patch_fit = {};
 };
 
@@ -41,7 +41,7 @@ struct Description<VoronoiPatchOptions> {
   };
 };
 
-/// Sites of one smooth part of a polyhedron's border, which count as one site. There are three kinds:
+/// Sites of one smooth part of a polyhedron's border, which together are treated as one site. There are three kinds:
 ///
 ///   face    Faces that are connected through edges with small bends, and the reflex edges and vertices inside this
 ///           part of the border. For example, all sites of a cylinder's side.
@@ -69,11 +69,12 @@ struct Description<VoronoiPatch> {
 /// Returns the patches of the sites of a polyhedron. Patch k has the number k in `patch_a` and `patch_b` of
 /// add_patch_columns(), and in graphs of patches. Patches of faces come first, in the order of their first triangles,
 /// as in AxisGraph::patches. Then come patches of edges, and those of vertices, in the order of their smallest sites.
-/// The normal of a face is the mean normal of its triangles. A face without triangles belongs to no patch: a
-/// VoronoiReport joined it to another face.
-/// With `patch_fit`, patches of faces are those of the shapes that fit them. Flat faces that fit no sphere, cylinder or
-/// cone are planes. Where several shapes fit, the one with the largest part is chosen, and then the least deviation
-/// decides (docs/theory/voronoi.md, "Fitted patches"). Patches do not depend on the number of threads.
+/// The normal of a face is the mean normal of its triangles. A face without triangles belongs to no patch, because it
+/// was joined to another face (VoronoiReport::joined_faces).
+/// With `patch_fit`, each patch of faces is a part of the shape that fits it. Flat faces that fit no sphere, cylinder
+/// or cone are planes. If several shapes fit, the shape with the largest part is chosen; for parts of similar size, the
+/// smallest deviation decides (docs/theory/voronoi.md, "Fitted patches"). Patches do not depend on the number of
+/// threads.
 /// @param sites  result of voronoi_sites() for this mesh.
 /// @throws InvalidOption if the angle or the tolerance is out of range, or if the sites are not those of the mesh;
 /// InvalidMesh; Cancelled. Cost: O(n log n) for n triangles, about 1 us per triangle; about 20 us with `patch_fit`.
@@ -81,9 +82,9 @@ struct Description<VoronoiPatch> {
                                                         const VoronoiPatchOptions& options = {},
                                                         const Context& context = {});
 
-/// Adds the columns `patch_a` and `patch_b` (int32) to the triangles of a complex. They are the patches of site_a and
-/// site_b, the smaller number first. On the surface, `patch_a` is -1. Inside a patch, both are equal. If the complex
-/// has such columns, they are replaced.
+/// Adds the columns `patch_a` and `patch_b` (int32) to the triangles of a complex. The columns contain the patches of
+/// site_a and site_b, the smaller number first. On the surface, `patch_a` is -1. If both sites belong to the same
+/// patch, the two numbers are equal. Existing columns of these names are replaced.
 /// @param complex  with the columns `site_a` and `site_b`.
 /// @throws InvalidOption if a column is missing, or if no patch has a site of the complex.
 void add_patch_columns(Complex& complex, std::span<const VoronoiPatch> patches);

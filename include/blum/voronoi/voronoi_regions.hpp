@@ -12,7 +12,7 @@
 
 namespace blum {
 
-/// Neighbour of a region, and the wall between the two.
+/// Neighbour of a region, and the wall between the two regions.
 struct VoronoiNeighbour {
   std::int32_t site = 0;  ///< Site of the neighbour.
   double area = 0;        ///< Area of the wall, square mesh units.
@@ -50,8 +50,8 @@ struct Description<VoronoiRegion> {
 
 /// Returns the regions of a result of voronoi_complex() that have triangles in their border, by ascending site. Volumes
 /// and areas are computed from the triangles. The error of a volume is at most about the area of the region's walls
-/// times VoronoiReport::hausdorff_bound, and usually much smaller. If the diagram is traced, it is about the area times
-/// VoronoiReport::chord. Regions thinner than a cube may have a volume of 0, or slightly below 0.
+/// times VoronoiReport::hausdorff_bound, and usually much smaller. If the diagram is traced, the error is about the
+/// area times VoronoiReport::chord. Regions thinner than a cube may have a volume of 0, or slightly below 0.
 /// @param complex  with the columns `site_a` and `site_b`. Volumes are meaningful only if the complex contains the
 /// surface (VoronoiPart::all).
 /// @throws InvalidOption if a column is missing; InvalidMesh with the text of problem_of(complex).

@@ -50,9 +50,9 @@ struct Description<VoronoiSite> {
 /// Cost: that of polyhedron_sites().
 [[nodiscard]] std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const Context& context = {});
 
-/// Returns the sites of a result of voronoi_complex(). If the result joined faces, the triangles of all of them belong
-/// to the face whose number stands for them. The other faces then have no triangles. Edges and vertices inside joined
-/// faces stay in the list, though they have no regions.
+/// Returns the sites of a result of voronoi_complex(). If faces were joined (VoronoiReport::joined_faces), the face
+/// with the smallest number has the triangles of all joined faces. The other joined faces have no triangles. Edges and
+/// vertices inside joined faces stay in the list, though they have no regions.
 /// @param report  of a complex of this mesh.
 /// @throws as polyhedron_sites(); InvalidOption if the report has faces that the mesh does not have.
 [[nodiscard]] std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const VoronoiReport& report,
