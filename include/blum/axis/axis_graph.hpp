@@ -77,10 +77,10 @@ struct Description<AxisSpread> {
 
 /// Kind of an AxisJunction, by the seams, curves and sheets at its vertex.
 enum class JunctionKind : std::uint8_t {
-  junction,    ///< Seams or curves meet here, or none of the other kinds applies.
-  seam_end,    ///< One seam ends here, and no other seam or curve meets the vertex.
+  junction,    ///< Seams or curves meet at the vertex, or no other kind of this list applies.
+  seam_end,    ///< One seam ends at the vertex, and no other seam or curve meets the vertex.
   curve_end,   ///< Free end of a curve.
-  curve_foot,  ///< One curve ends here, on a sheet.
+  curve_foot,  ///< One curve ends at the vertex, on a sheet.
   contact,     ///< Sheets touch at the vertex, or along an edge that is not a seam. No seam or curve meets the vertex.
   point,       ///< Vertex without edges and triangles: the whole axis of a body.
 };
@@ -95,16 +95,16 @@ struct Description<JunctionKind> {
   };
 };
 
-/// Vertex that does not lie in the interior of exactly one sheet, rim, seam or curve. Seams and curves begin and end at
-/// such vertices, unless they are closed.
+/// Vertex that does not lie in the interior of exactly one sheet, rim, seam or curve. Every seam or curve that is not
+/// closed begins and ends at a junction.
 struct AxisJunction {
   std::uint32_t vertex = 0;  ///< Index of the vertex in the axis.
   JunctionKind kind = JunctionKind::junction;
   Vec3d position;
   double radius = 0;
-  /// Seams that begin or end here, ascending; a seam that does both is listed twice.
+  /// Seams that begin or end at the vertex, ascending; a seam that begins and ends there is listed twice.
   std::vector<std::uint32_t> seams;
-  std::vector<std::uint32_t> curves;  ///< Curves that begin or end here, listed in the same way.
+  std::vector<std::uint32_t> curves;  ///< Curves that begin or end at the vertex, listed like `seams`.
   std::vector<std::uint32_t> sheets;  ///< Numbers (AxisSheet::sheet) of the sheets that contain the vertex, ascending.
 };
 
@@ -118,9 +118,9 @@ struct Description<AxisJunction> {
       Member{"position", &AxisJunction::position, "mesh units", "position of the vertex"},
       Member{"radius", &AxisJunction::radius, "mesh units", "distance to the surface"},
       Member{"seams", &AxisJunction::seams, "",
-             "seams that begin or end at the vertex; a seam that does both is listed twice"},
+             "seams that begin or end at the vertex; a seam that begins and ends there is listed twice"},
       Member{"curves", &AxisJunction::curves, "",
-             "curves that begin or end at the vertex; a curve that does both is listed twice"},
+             "curves that begin or end at the vertex; a curve that begins and ends there is listed twice"},
       Member{"sheets", &AxisJunction::sheets, "", "sheets that contain the vertex"},
   };
 };
@@ -211,10 +211,11 @@ struct AxisSheet {
   std::uint32_t sheet = 0;  ///< Number of the sheet in the column `medial_columns::sheet`.
   std::size_t triangles = 0;
   double area = 0;
-  double homotopy_area = 0;     ///< Area of its triangles with angles of at most theta: they exist for homotopy alone.
-  bool for_homotopy = false;    ///< True if all its triangles exist for homotopy alone.
-  AxisSpread thickness;         ///< Twice the radius of its vertices.
-  AxisSpread separation_angle;  ///< Separation angle of its vertices, degrees. It is near 180 between parallel walls.
+  double homotopy_area = 0;   ///< Area of its triangles with angles of at most theta: they exist for homotopy alone.
+  bool for_homotopy = false;  ///< True if all its triangles exist for homotopy alone.
+  AxisSpread thickness;       ///< Twice the radius of its vertices.
+  /// Separation angle of its vertices, degrees. The angle is near 180 between parallel walls.
+  AxisSpread separation_angle;
   /// Area of the triangles whose vertices all have separation angles of 150 degrees or more.
   double wall_area = 0;
   AxisSpread wall_thickness;  ///< Twice the radius over the triangles of `wall_area`; zeros if there are none.
@@ -226,7 +227,7 @@ struct AxisSheet {
   std::int64_t euler_characteristic = 0;   ///< After cutting along seams: 1 for a disc, 0 for a ring, 2 for a sphere.
   std::vector<std::uint32_t> seams;        ///< Seams along which it meets other sheets or itself, ascending.
   std::vector<AxisPatchPair> patch_pairs;  ///< Patches on its two sides, by descending share; empty without a mesh.
-  /// In a graph of patches (AxisGraphOptions::of_patches): its `patch_a` and `patch_b`. Otherwise unset.
+  /// Patches on the two sides: the columns `patch_a` and `patch_b`. Unset if AxisGraphOptions::of_patches is false.
   std::optional<std::array<std::uint32_t, 2>> sides;
 };
 
@@ -309,16 +310,17 @@ struct Description<AxisGraph> {
 /// and all ends of lines. A line begins at the junction with the smaller number. Lines are listed in the order of the
 /// junctions at which they begin; closed lines come last.
 ///
-/// The separation angle of a triangle or an edge does not depend on theta. It is 0 if the triangle or edge exists only
-/// to preserve the homotopy type. Triangles and edges with an angle of at most theta (AxisGraphOptions::homotopy_angle)
-/// are treated as existing for homotopy alone. MedialCheck::homotopy_share treats triangles in the same way. Some
-/// triangles and edges with such an angle were kept only because another triangle or edge prevented their removal.
+/// The separation angle of a triangle or an edge does not depend on theta. The angle is 0 if the triangle or edge
+/// exists only to preserve the homotopy type. Triangles and edges with an angle of at most theta
+/// (AxisGraphOptions::homotopy_angle) are treated as existing for homotopy alone. MedialCheck::homotopy_share treats
+/// triangles in the same way. Some triangles and edges with a small angle were kept only because another triangle or
+/// edge prevented their removal.
 ///
 /// In a graph of patches (AxisGraphOptions::of_patches), the column `patch_sheet` decides which triangles form a sheet.
-/// Triangles without such a sheet are left out, so fewer triangles may meet at an edge.
+/// Triangles without a number in this column are left out, so fewer triangles may meet at an edge.
 ///
 /// @param axis  axis with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
-/// angles count as 0.
+/// angles are treated as 0.
 /// @return      the same bytes for equal arguments. Sums are computed in double, in the order of triangles and edges.
 /// @throws InvalidOption if an angle of the options is out of range, or if radii or sheets are missing. The function
 /// also throws InvalidOption if problem_of_medial() reports a problem in the columns that the axis has.
@@ -331,7 +333,8 @@ struct Description<AxisGraph> {
 /// that contain the footprints of the sheet's vertices. Vertices are left out if their two footprints coincide, or
 /// their sites are not known. So the shares of a sheet (AxisPatchPair::share) may sum to less than 1.
 /// @param mesh  mesh from which the axis was made. The sites of the axis are numbered as in SiteTable(mesh).
-/// @throws InvalidOption as above, and if the axis has a site that the mesh lacks; InvalidMesh.
+/// @throws InvalidOption in the cases of axis_graph() without a mesh, and if the axis has a site that the mesh lacks;
+/// InvalidMesh.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options = {},
                                    const Context& context = {});
 

@@ -12,12 +12,12 @@ namespace blum {
 ///
 /// Triangles are removed by elementary collapses, the triangle with the smallest angle first. A collapse removes a
 /// triangle together with a free edge: an edge that belongs to no other triangle. The angles of the triangle and of the
-/// edge must be at most theta. Then each edge without triangles is removed together with one of its vertices, if this
-/// vertex belongs to no other edge. The edge is kept if its angle, or the angle of a triangle that contained it, is
-/// above theta. The angle of an edge is the smaller angle of its two vertices. Along a seam, the angle of an edge is
-/// larger than the angles of the edge's triangles. The homotopy type is preserved. The result for a larger theta is
-/// part of the result for a smaller theta. The order of removal is that of Liu, Chambers, Letscher, Ju 2010, applied to
-/// complexes of triangles (see also Sud 2006, 5.6).
+/// edge must be at most theta. After that, each edge without triangles is removed together with one of its vertices, if
+/// the vertex belongs to no other edge. An edge without triangles is kept if its angle, or the angle of a removed
+/// triangle that contained it, is above theta. The angle of an edge is the smaller angle of its two vertices. Along a
+/// seam, the angle of an edge is larger than the angles of the edge's triangles. The homotopy type is preserved. The
+/// result for a larger theta is part of the result for a smaller theta. The order of removal is that of Liu, Chambers,
+/// Letscher, Ju 2010, applied to complexes of triangles (see also Sud 2006, 5.6).
 ///
 /// @param walls  triangles with the columns that voronoi_complex() computes for VoronoiPart::medial_axis. Vertices need
 ///               `radius`, footprints, sites and `separation_angle`; triangles need `separation_angle`. Other columns

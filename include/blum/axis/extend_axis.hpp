@@ -66,7 +66,8 @@ struct ExtendReport {
   /// Rim edges without new triangles, because new triangles would fold back or leave the solid.
   std::size_t left_out = 0;
   double seam_length = 0;  ///< Length of the edges that extensions now share with other sheets, mesh units.
-  /// Length of the edges of extensions that lie on other sheets at both ends, but share no edge with them, mesh units.
+  /// Length of the edges of extensions whose ends lie on another sheet, but which share no edge with that sheet, mesh
+  /// units.
   double unshared_length = 0;
   std::size_t vertices = 0;   ///< New vertices.
   std::size_t triangles = 0;  ///< New triangles, including parts of divided ones.
@@ -94,7 +95,7 @@ struct Description<ExtendReport> {
       Member{"seam_length", &ExtendReport::seam_length, "mesh units",
              "length of the edges that extensions share with other sheets"},
       Member{"unshared_length", &ExtendReport::unshared_length, "mesh units",
-             "length of the edges of extensions that lie on other sheets without sharing an edge"},
+             "length of the edges of extensions that lie on other sheets, but share no edge with these sheets"},
       Member{"vertices", &ExtendReport::vertices, "", "new vertices"},
       Member{"triangles", &ExtendReport::triangles, "", "new triangles, including parts of divided ones"},
       Member{"axis_area", &ExtendReport::axis_area, "square mesh units", "area of all triangles of the axis"},
@@ -135,9 +136,9 @@ struct ExtendedAxis {
 /// the extension of another sheet, lies between the rim and the surface, the new triangles end at this sheet or
 /// extension. The middle of each new triangle lies in the solid, and so do the middles of its sides, except for sides
 /// on the new border. A new triangle is turned by less than 80 degrees relative to the axis's triangle at the rim edge.
-/// Both triangles face the same way. The homotopy type is that of the axis, because the new triangles can be pushed
-/// back into the rims. Extensions of different rims may overlap if they meet at less than 15 degrees; this is not
-/// checked.
+/// The new triangle faces the same way as the axis's triangle. The homotopy type is that of the axis, because the new
+/// triangles can be pushed back into the rims. Extensions of different rims may overlap if they meet at less than 15
+/// degrees; this is not checked.
 ///
 /// With ExtendOptions::join, new triangles share vertices and edges with the sheet or extension that they meet. For
 /// this, triangles are divided, border vertices move by at most ExtendOptions::tolerance, and gaps of few edges are

@@ -7,8 +7,8 @@
 namespace blum::detail {
 
 /// Computes sheets, rims, seams and roles of a medial axis. Before the call, the axis lists only its curves as edges.
-/// The function numbers the sheets in the order of their first triangles; order_sheets() may renumber them. It adds
-/// rims and seams to the edges, and sets the role of each vertex.
+/// The function numbers the sheets in the order of their first triangles; order_sheets() may renumber them. The
+/// function also adds rims and seams to the edges, and sets the role of each vertex.
 /// @param incidence  incidences of the axis before the call.
 void label_sheets(Complex& axis, const Incidence& incidence);
 

@@ -48,7 +48,7 @@ struct Description<SheetMatchOptions> {
   };
 };
 
-/// Part of a sheet that lies on one sheet of the other axis.
+/// Part of a sheet of one axis that lies on a single sheet of the other axis.
 struct SheetOverlap {
   std::uint32_t sheet = 0;  ///< Number of the sheet of the other axis.
   double area = 0;          ///< Area of the part.
@@ -137,11 +137,11 @@ struct Description<MatchedAxis> {
 struct SheetMatches {
   MatchedAxis first, second;
   double tolerance = 0;  ///< The tolerance that was used, mesh units.
-  /// Number of pairs of partners whose patches are compared. Both sheets of such a pair have more than half of their
-  /// area between two patches (MatchedSheet::sides).
+  /// Number of pairs of partners whose patches are compared. Patches are compared if each of the two sheets has more
+  /// than half of its area between two patches (MatchedSheet::sides).
   std::size_t compared_sides = 0;
   std::size_t same_sides = 0;  ///< Compared pairs with the same patches.
-  /// True if each large sheet of both axes has a partner, and compared patches of large sheets are the same.
+  /// True if each large sheet of both axes has a partner, and all compared patches of large sheets agree.
   bool same_large_sheets = false;
 };
 
@@ -170,7 +170,8 @@ struct Description<SheetMatches> {
 ///
 /// Shares are exact to about 1 / sqrt(n) for n points on a sheet, and much better where borders are short. Triangles
 /// without area get no points, and a sheet without area has no partner. Curves are not compared.
-/// Governors of both axes are comparable only if both were made from the same mesh with the same options of patches.
+/// The governors of two axes are comparable only if both axes were made from the same mesh with the same options of
+/// patches.
 /// @param first, second  axes with the column `sheet`. Any other complex with this column may be given, too.
 /// @return      the same result for any number of threads. If an axis has no sheets, no sheet has a partner.
 /// @throws InvalidOption if an option is out of range, or if triangles lack the column `sheet` (with `of_patches`:

@@ -37,8 +37,9 @@ struct Deviation {
   double beyond = 0;
 };
 
-/// Returns how far a sheet moves when the centre of a fan moves to the first ring vertex. Triangles then join the other
-/// ring vertices to the first one. Returns nullopt if triangles would fold over or turn by more than about 75 degrees.
+/// Returns how far a sheet moves when the centre of a fan moves to the first ring vertex. After the move, triangles
+/// join the first ring vertex to the other ring vertices. Returns nullopt if triangles would fold over or turn by more
+/// than about 75 degrees.
 /// @param ring  as Fan::ring, starting with the vertex to which the centre moves.
 [[nodiscard]] std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const AxisPoint> ring,
                                                  bool is_closed);

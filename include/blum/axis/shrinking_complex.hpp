@@ -17,8 +17,8 @@ struct LinkScratch {
   std::vector<std::uint32_t> linked, linked_to_edge;
 };
 
-/// Complex from which edges and triangles are removed. It lists the remaining edges and triangles at each vertex. Sides
-/// of triangles need not be listed as edges.
+/// Complex from which edges and triangles are removed. The class lists the remaining edges and triangles at each
+/// vertex. Sides of triangles need not be listed as edges.
 class ShrinkingComplex {
  public:
   explicit ShrinkingComplex(const ComplexView& complex);
@@ -65,7 +65,8 @@ class ShrinkingComplex {
   void add_edge(const std::array<std::uint32_t, 2>& ends);
 
   /// Returns the remaining part of a complex, with its columns.
-  /// @param whole  complex from which this object was made. It may lack the last edges of this object.
+  /// @param whole  complex from which this object was made. The complex may lack the edges that were added to this
+  ///               object last.
   [[nodiscard]] Complex rest_of(const Complex& whole) const;
 
  private:

@@ -13,9 +13,9 @@
 namespace blum {
 
 /// Certifies many axes of one solid, and reads the solid only once. The verifier stores the shells, crossings, Betti
-/// numbers and search trees of the solid. It also stores the balls from random points that reveal missing parts of an
-/// axis (MedialCheck). All these data are computed when an axis first needs them. The certificates equal those of
-/// certify() and certify_topology(), byte for byte. The order of the axes does not change a certificate.
+/// numbers and search trees of the solid. The verifier also stores the balls from random points that reveal missing
+/// parts of an axis (MedialCheck). Data of the solid are computed when an axis first needs them. The certificates equal
+/// those of certify() and certify_topology(), byte for byte. The order of the axes does not change a certificate.
 ///
 /// Many threads may use one verifier at the same time. If several threads need the same data, one thread computes them
 /// and the others wait.

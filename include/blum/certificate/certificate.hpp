@@ -70,7 +70,7 @@ struct Description<BodyCheck> {
 /// body contains the vertex, they are measured to the surface of the closest body. The surface of a body consists of
 /// its outer shell and the shells of its voids. The tolerance is the larger of two lengths: 1e-6 of the diagonal of the
 /// body's box, and twice the rounding error of the body's coordinates. For the voxels of a mesh (SolidRule::winding), a
-/// vertex counts as outside only if it is more than a voxel's diagonal from the voxels.
+/// vertex is outside only if its distance from the voxels is more than a voxel's diagonal.
 struct GeometryCheck {
   std::size_t vertices = 0;    ///< Number of checked vertices.
   std::size_t not_finite = 0;  ///< Vertices with a coordinate, radius, footprint or angle that is not finite.
@@ -118,12 +118,12 @@ struct Description<GeometryCheck> {
 /// If a point of the solid is at distance r from the surface, the ball of radius r around it lies in the solid. The
 /// check covers each edge with such balls, so every point of the edge is checked.
 ///
-/// An edge may cut a corner of its body if the edge can be pushed into the solid. Such an edge may leave the body by at
-/// most 1/64 of the diagonal of the body's box. For images, the limit is half the diagonal of a voxel if that is
-/// larger. To push an edge, the check moves the edge's outermost point into the solid, through the closest point of the
-/// surface. The two halves of the edge are then treated in the same way, until the whole edge lies in the solid. At
-/// most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is. If the solid consists
-/// of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is pushed.
+/// An edge may cut a corner of its body if the edge can be pushed into the solid. An edge that is pushed may leave the
+/// body by at most 1/64 of the diagonal of the body's box. For images, the limit is half the diagonal of a voxel if
+/// that is larger. To push an edge, the check moves the edge's outermost point into the solid, through the closest
+/// point of the surface. The two halves of the edge are then treated in the same way, until the whole edge lies in the
+/// solid. At most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is. If the solid
+/// consists of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is pushed.
 struct EdgeCheck {
   std::size_t edges = 0;    ///< Checked edges, each counted once.
   std::size_t pushed = 0;   ///< Edges that cut a corner of their body, but can be pushed into it.
@@ -164,13 +164,13 @@ struct Description<EdgeCheck> {
 /// Result of the check that the inclusion of an axis into its solid is an isomorphism of homology. Isomorphic homology
 /// is a stronger result than equal Betti numbers. The check uses Alexander duality. Closed paths along the surface
 /// generate the homology of the complement of the solid. The check computes the exact linking numbers of these paths
-/// with loops of the axis. It also computes the exact winding numbers of closed surfaces of the axis around points in
-/// each void.
+/// with loops of the axis. The check also computes the exact winding numbers of closed surfaces of the axis around
+/// points in each void.
 ///
-/// An axis fails the check if a loop runs around no tunnel. It also fails if two loops run around the same tunnel while
-/// another tunnel has no loop around it. It also fails if a triangle spans a hole of the solid. The check runs only if
-/// all Betti numbers agree, all vertices are finite, and all edges lie in the solid. If the solid consists of voxels,
-/// only the numbers of tunnels and voids are compared.
+/// An axis fails the check if a loop runs around no tunnel. An axis also fails if two loops run around the same tunnel
+/// while another tunnel has no loop around it. An axis also fails if a triangle spans a hole of the solid. The check
+/// runs only if all Betti numbers agree, all vertices are finite, and all edges lie in the solid. If the solid consists
+/// of voxels, only the numbers of tunnels and voids are compared.
 struct HomologyCheck {
   std::size_t paths = 0;      ///< Closed paths along the surface with which linking numbers were computed.
   std::size_t triangles = 0;  ///< Triangles of the axis in bodies with tunnels.
@@ -290,31 +290,32 @@ struct Description<BallUnionCheck> {
 /// has a corner with a radius below one voxel. At most a tenth of the vertices of judged cells, or 16 vertices if that
 /// is more, may exceed this limit.
 ///
-/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of such a cell,
-/// and the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that
-/// is allowed between the axis and the centre of a ball with the vertex's radius (see below). The distance of the
-/// vertex from the middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above
-/// 256 square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
+/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of this cell, and
+/// the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that is
+/// allowed between the axis and the centre of a ball with the vertex's radius (see below). The distance of the vertex
+/// from the middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above 256
+/// square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
 ///
 /// The third rule finds missing parts of the axis. Balls are grown from random points of the solid. In each body,
 /// further balls are grown from points next to the body's surface. If the solid consists of voxels, the further balls
 /// are grown from points in the body's box instead. If theta is unknown, missing parts are not checked.
 ///
 /// A ball counts if it touches two walls at points that are at least lambda apart, and its separation angle is large.
-/// This angle is the angle between the two points, seen from the ball's centre. It must be at least theta plus 30
-/// degrees, or halfway from theta to 180 degrees if that is less. In this rule, a theta below 10 degrees (images: 20)
-/// is raised to this value. If the distance between the two points is below 4 voxels plus lambda, the angle must also
-/// be at least 80 degrees. If the solid consists of voxels, balls whose two points are that close never count.
+/// The separation angle of a ball is the angle between the two points, seen from the ball's centre. This angle must be
+/// at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is less. In this rule, a theta below 10
+/// degrees (images: 20) is raised to this value. If the distance between the two points is below 4 voxels plus lambda,
+/// the angle must also be at least 80 degrees. If the solid consists of voxels, balls whose two points are that close
+/// never count.
 ///
 /// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
 /// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
 /// voxels if that is more.
 ///
-/// This condition must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %). The further
-/// balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more further balls
-/// that count, the condition must hold for half of them. If the condition fails for more than 10 % of the further balls
-/// of all bodies, it must hold for 90 % of them in each body. Three balls may always fail the condition, in the whole
-/// solid and in each body.
+/// The limit for the distance must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %).
+/// The further balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more
+/// further balls that count, the limit must hold for half of these balls. If the limit fails for more than 10 % of the
+/// further balls of all bodies, it must hold for 90 % of them in each body. Three balls may always exceed the limit, in
+/// the whole solid and in each body.
 ///
 /// If borders were fitted, the check also judges parts of the solid that are thinner than a voxel. The limits then
 /// depend on the radius in these parts. A ball counts if its radius is at most two thirds of a voxel, and its angle at
@@ -352,15 +353,15 @@ struct MedialCheck {
   Vec3d off_at;                   ///< Position of the sample at that distance, mesh units.
   std::size_t sheets_judged = 0;  ///< Sheets that were judged one by one; 0 if the solid consists of voxels.
   std::size_t sheets_off = 0;     ///< Judged sheets with more than half of their points outside the allowance.
-  Vec3d sheet_off_at;             ///< Position of a point outside the allowance in the first such sheet, mesh units.
-  double sought_angle = 0;        ///< Smallest angle of balls that count, degrees; 0 if missing parts were not checked.
-  double missing_allowance = 0;   ///< Largest accepted distance of a ball's centre from the axis, mesh units.
-  std::size_t balls = 0;          ///< Balls from random points of the solid that count.
-  double missed_share = 0;        ///< Share of `balls` without a point of the axis near their centres.
-  double missed_by = 0;           ///< Largest distance of the centre of one of `balls` from the axis, mesh units.
-  Vec3d missed_at;                ///< Centre of the ball at that distance, mesh units.
-  std::size_t bodies_unseen = 0;  ///< Bodies in which fewer than 20 balls count. They are not judged.
-  std::size_t bodies_missed = 0;  ///< Judged bodies in which too many balls have no point of the axis nearby.
+  Vec3d sheet_off_at;       ///< Position of a point outside the allowance in the first of `sheets_off`, mesh units.
+  double sought_angle = 0;  ///< Smallest angle of balls that count, degrees; 0 if missing parts were not checked.
+  double missing_allowance = 0;     ///< Largest accepted distance of a ball's centre from the axis, mesh units.
+  std::size_t balls = 0;            ///< Balls from random points of the solid that count.
+  double missed_share = 0;          ///< Share of `balls` without a point of the axis near their centres.
+  double missed_by = 0;             ///< Largest distance of the centre of one of `balls` from the axis, mesh units.
+  Vec3d missed_at;                  ///< Centre of the ball at that distance, mesh units.
+  std::size_t bodies_unseen = 0;    ///< Bodies that are not judged, because fewer than 20 balls count.
+  std::size_t bodies_missed = 0;    ///< Judged bodies in which too many balls have no point of the axis nearby.
   double missed_share_of_body = 0;  ///< As `missed_share`, for the balls of the body with the largest share.
   /// Largest distance of the centre of a ball of that body from the axis, mesh units.
   double missed_in_body_by = 0;
@@ -370,7 +371,7 @@ struct MedialCheck {
   double thin_missed_by = 0;     ///< Largest distance of the centre of one of `thin_balls` from the axis, mesh units.
   Vec3d thin_missed_at;          ///< Centre of the ball at that distance, mesh units.
   std::size_t pairs_missed = 0;  ///< Pairs of walls between which a sheet is missing.
-  Vec3d pair_missed_at;          ///< Centre of a missed ball of the first such pair, mesh units.
+  Vec3d pair_missed_at;          ///< Centre of a missed ball of the first of `pairs_missed`, mesh units.
   bool judges_missing = false;   ///< True if at least 20 balls count, in the whole solid or in one body.
   bool holds = false;            ///< True if no judged limit is exceeded.
 };
@@ -414,7 +415,7 @@ struct Description<MedialCheck> {
       Member{"sheets_off", &MedialCheck::sheets_off, "",
              "judged sheets with more than half of their points outside the allowance"},
       Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units",
-             "point outside the allowance in the first such sheet"},
+             "point outside the allowance in the first sheet of sheets_off"},
       Member{"sought_angle", &MedialCheck::sought_angle, "degrees",
              "smallest angle of the medial balls that count; 0 if missing parts were not checked"},
       Member{"missing_allowance", &MedialCheck::missing_allowance, "mesh units",
@@ -445,7 +446,7 @@ struct Description<MedialCheck> {
              "centre of the ball at the distance thin_missed_by"},
       Member{"pairs_missed", &MedialCheck::pairs_missed, "", "pairs of walls between which a sheet is missing"},
       Member{"pair_missed_at", &MedialCheck::pair_missed_at, "mesh units",
-             "centre of a ball between the first such pair, where the axis is missing"},
+             "centre of a ball between the first missed pair of walls, where the axis is missing"},
       Member{"judges_missing", &MedialCheck::judges_missing, "", "true if enough balls count to judge missing parts"},
       Member{"holds", &MedialCheck::holds, "", "true if no limit is exceeded"},
   };
@@ -499,8 +500,8 @@ struct Description<TriangleCheck> {
 /// (MedialRole).
 ///
 /// Sheets must be numbered from 0, without gaps. Each sheet must be connected through edges of exactly two triangles.
-/// Two sheets may share such an edge only if one of its ends lies on a seam. At these edges, the axis may label the two
-/// triangles as one sheet or as two. No violation is accepted.
+/// Two sheets may share an edge of exactly two triangles only if one end of the edge lies on a seam. At these edges,
+/// the axis may label the two triangles as one sheet or as two. No violation is accepted.
 struct LabelCheck {
   std::size_t doubled = 0;       ///< Edges and triangles with the same vertices as another edge or triangle.
   std::size_t inner_listed = 0;  ///< Listed edges that belong to two triangles.
@@ -552,7 +553,7 @@ struct AngleCheck {
   /// of them. At most 0.6 is accepted.
   double curves_above_share = 0;
   std::size_t borders = 0;  ///< Edges of rims and seams.
-  /// Edges of rims and seams with an angle above the angles of all their triangles. None is accepted.
+  /// Edges of rims and seams with an angle above the angles of all their triangles. The largest accepted number is 0.
   std::size_t borders_above = 0;
   /// Edges of rims and seams with an angle more than 20 degrees below the largest angle of their triangles. At most
   /// half of `borders` are accepted.
@@ -601,11 +602,11 @@ struct Description<AngleCheck> {
 /// one pair of patches.
 struct SheetCheck {
   std::size_t sheets = 0;     ///< Sheets with two large parts that only edges next to seams join.
-  std::size_t two_pairs = 0;  ///< Sheets among `sheets` that lie between two pairs of walls. None is accepted.
-  Vec3d two_pairs_at;         ///< Point in the first such sheet, mesh units.
+  std::size_t two_pairs = 0;  ///< Sheets among `sheets` between two pairs of walls; the largest accepted number is 0.
+  Vec3d two_pairs_at;         ///< Point in the first of `two_pairs`, mesh units.
   std::size_t vertices = 0;   ///< Vertices inside the part of a sheet for which the file states one pair of sites.
   std::size_t wrong = 0;      ///< Vertices among `vertices` with a footprint on neither of the two sites.
-  Vec3d wrong_at;             ///< Position of the first such vertex, mesh units.
+  Vec3d wrong_at;             ///< Position of the first of `wrong`, mesh units.
   bool holds = false;         ///< True if no limit is exceeded.
 };
 
@@ -615,12 +616,12 @@ struct Description<SheetCheck> {
   static constexpr std::string_view doc = "Check that sheets lie between single pairs of walls";
   static constexpr std::tuple members{
       Member{"sheets", &SheetCheck::sheets, "", "sheets with two large parts that only edges next to seams join"},
-      Member{"two_pairs", &SheetCheck::two_pairs, "", "such sheets that lie between two pairs of walls"},
+      Member{"two_pairs", &SheetCheck::two_pairs, "", "sheets among these that lie between two pairs of walls"},
       Member{"two_pairs_at", &SheetCheck::two_pairs_at, "mesh units", "point in the first sheet of two pairs of walls"},
       Member{"vertices", &SheetCheck::vertices, "",
              "vertices inside a part of a sheet for which the file states one pair of sites"},
-      Member{"wrong", &SheetCheck::wrong, "", "such vertices with a footprint on neither of these sites"},
-      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first such vertex"},
+      Member{"wrong", &SheetCheck::wrong, "", "vertices among these with a footprint on neither of the two sites"},
+      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first vertex of wrong"},
       Member{"holds", &SheetCheck::holds, "", "true if no limit is exceeded"},
   };
 };
@@ -755,7 +756,7 @@ struct Description<MeshSolidRule> {
 ///
 /// The check uses no field, no voxels and no record of the construction. The Betti numbers of the solid follow from the
 /// homology of its shells and their nesting. The nesting is found by counting how often lines cross the shells. The
-/// verifier has its own code for distances. It shares four parts with the construction: the search for crossings of
+/// verifier has its own code for distances. Verifier and construction share four parts: the search for crossings of
 /// triangles, the resolution of crossings, signs of determinants and the numbering of sites. Shells may face either
 /// way, and may touch each other. Triangles with the same vertex twice are ignored. If the mesh crosses itself, the
 /// result of resolve_crossings() bounds the solid.
@@ -771,10 +772,10 @@ struct Description<MeshSolidRule> {
                                   const Context& context = {});
 
 /// Checks an axis against the closed union of voxels. If `surface` is nullptr, the voxels are those of an image, and
-/// distances are measured to their faces. Otherwise, the voxels represent a mesh that is not a polyhedron
-/// (SolidRule::winding), and distances are measured to that mesh; voxels_inside() computes such voxels. All voxels are
-/// used as given. So an error in the voxels that the axis was made from is not detected if the same voxels are passed
-/// here.
+/// distances are measured to their faces. If `surface` is a mesh, the voxels represent this mesh, which is not a
+/// polyhedron (SolidRule::winding). Distances are then measured to the mesh. The function voxels_inside() computes the
+/// voxels of a mesh. All voxels are used as given. So an error in the voxels that the axis was made from is not
+/// detected if the same voxels are passed here.
 /// @param grid  grid whose nodes are the centres of the voxels.
 /// @param surface  mesh that the voxels represent; nullptr for an image.
 /// @throws InvalidGrid, also if the grid does not cover the mesh. InvalidMesh. InvalidOption, also if the sizes of the

@@ -85,11 +85,11 @@ struct AxisGrids {
 /// sheets fitted to the surface. The second form has all vertices and fitted borders. The third form has few vertices,
 /// and borders that follow the cells of the grid. The fourth form has all vertices that these cells yield. If walls are
 /// thin, a form may fail although the next form is certified. The fourth form has the full detail of the grid's cells.
-/// The other forms are easier to view.
+/// The first three forms are easier to view.
 ///
 /// Walls much thinner than a voxel may be represented badly on one grid and well on another. If an axis is not
-/// certified in any form, the function moves the grid by a fraction of a voxel and tries again. It does this only if
-/// model_problems() reports no problem. At most three other grids are tried. The grid with the fewest mismatches is
+/// certified in any form, the function moves the grid by a fraction of a voxel and tries again. The grid is moved only
+/// if model_problems() reports no problem. At most three other grids are tried. The grid with the fewest mismatches is
 /// kept.
 /// @throws InvalidOption if an option is out of range. Also the exceptions of `make`, `certify`, MedialAxis::lean(),
 /// decimate() and prune_sheets(). Nothing is thrown if an axis is not certified: check holds().

@@ -56,8 +56,8 @@ class UnknownVoxels : public InvalidMesh {
                                                     const GridSpec* image_grid);
 
 /// Certifies axes of a mesh, and checks the claims of their files. The verifier reads the mesh only once
-/// (AxisVerifier). If the mesh does not bound a polyhedron, its solid consists of voxels. They are computed once for
-/// consecutive axes with the same grid. Many threads may use one object at the same time.
+/// (AxisVerifier). If the mesh does not bound a polyhedron, its solid consists of voxels. The voxels are computed once
+/// for consecutive axes with the same grid. Many threads may use one object at the same time.
 class MeshAxisVerifier {
  public:
   /// @param mesh  must stay unchanged while the verifier exists.

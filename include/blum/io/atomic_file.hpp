@@ -34,7 +34,7 @@ class AtomicFile {
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Flushes all written bytes to the disk and closes the file, so that commit() only has to rename it. This is useful
+  /// Flushes all written bytes to the disk and closes the file, so that commit() only has to rename it. Call finish()
   /// for several files that should appear together. May be called once, before commit(). If finish() is not called,
   /// commit() does this work.
   /// @throws FileError in the same cases as commit().

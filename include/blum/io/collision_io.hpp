@@ -52,9 +52,9 @@ struct MeshMotion {
 ///
 ///   `.npz`   Arrays for n collisions of a vertex and a face, and m collisions of two edges. `vertex_face` [n, 4] holds
 ///            the vertex, then the corners of the face. `vertex_face_time` [n] holds the times. `face` [n] holds the
-///            indices of the faces. `edge_edge` [m, 4] holds the two ends of one edge, then those of the other.
-///            `edge_edge_time` [m] holds the times. Indices are int32, and are those of vertices and triangles of the
-///            mesh.
+///            indices of the faces. `edge_edge` [m, 4] holds the two ends of the first edge, then the two ends of the
+///            second edge. `edge_edge_time` [m] holds the times. Indices are int32, and are those of vertices and
+///            triangles of the mesh.
 ///   `.csv`   A row for each collision. Columns: `kind` (vertex_face or edge_edge), the four vertices `a`, `b`, `c`,
 ///            `d`, the `time`, and the index of the `face`. For edge_edge, the column `face` is empty.
 ///   `.json`  An object with the metadata and lists with the names of the .npz arrays. The metadata `self`, `tolerance`

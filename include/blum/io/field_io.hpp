@@ -47,10 +47,10 @@ struct FieldFileInfo {
 ///   `.vti`   VTK image data: point data `distance` and `site`, for order 2 also `distance2` and `site2`, as raw
 ///            appended data. `metadata` (JSON) is field data.
 ///
-/// The metadata contain Blum's version, the source, the sign rule and its reason, and the band. They also describe the
-/// site values and, if FieldFileInfo::sites is given, the numbers of vertices, edges and faces. If the field has no
-/// sites, none are written. Numbers are stored in the byte order of the machine, which is stated in the files. The same
-/// input gives the same bytes.
+/// The metadata contain Blum's version, the source, the sign rule and its reason, and the band. The metadata also
+/// describe the site values and, if FieldFileInfo::sites is given, the numbers of vertices, edges and faces. If the
+/// field has no sites, none are written. Numbers are stored in the byte order of the machine, which is stated in the
+/// files. The same input gives the same bytes.
 ///
 /// A file appears under its name only when it is complete. For .nrrd, all files are complete before any of them
 /// appears. If a field without sites replaces OUT.nrrd, the old OUT.site.nrrd is removed, provided that it names

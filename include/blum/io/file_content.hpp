@@ -20,9 +20,10 @@ namespace blum {
 /// @throws FileError if the file cannot be opened, is a directory or has no known content.
 [[nodiscard]] FileContent content_of(const std::filesystem::path& path);
 
-/// Returns true if a file holds a medial axis or another complex. It returns true for every .vtp and .ma file, and for
-/// an .npz file with vertices and without distances. It returns true for a .ply file only if the file states that it is
-/// a medial axis, a Voronoi diagram or a centreline. It returns false for .obj files, because they cannot state this.
+/// Returns true if a file holds a medial axis or another complex. The result is true for every .vtp and .ma file, and
+/// for an .npz file with vertices and without distances. For a .ply file, the result is true only if the file states
+/// that it is a medial axis, a Voronoi diagram or a centreline. For an .obj file, the result is false, because .obj
+/// files cannot state their content.
 /// @throws FileError if the file cannot be opened or is a directory.
 [[nodiscard]] bool holds_complex(const std::filesystem::path& path);
 
@@ -46,11 +47,11 @@ namespace blum {
 [[nodiscard]] std::vector<std::filesystem::path> files_of_field(const std::filesystem::path& path,
                                                                 bool with_sites = true, int order = 1);
 
-/// Returns the file that write_field() removes when it writes a field without sites to a path. This is the separate
-/// file with the sites of the replaced field; nullopt if it does not exist.
+/// Returns the file that write_field() removes when it writes a field without sites to a path. The removed file is the
+/// separate file with the sites of the replaced field. Returns nullopt if this file does not exist.
 [[nodiscard]] std::optional<std::filesystem::path> sites_of_replaced_field(const std::filesystem::path& path);
-/// Returns the files that write_field() removes when it writes a field of order 1 to a path. These are the files of the
-/// second distances and sites of the replaced field.
+/// Returns the files that write_field() removes when it writes a field of order 1 to a path. The removed files hold the
+/// second distances and second sites of the replaced field.
 [[nodiscard]] std::vector<std::filesystem::path> second_of_replaced_field(const std::filesystem::path& path);
 
 }  // namespace blum

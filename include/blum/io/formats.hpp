@@ -139,8 +139,8 @@ extern template class FormatOf<FileContent::graph>;
 extern template class FormatOf<FileContent::centreline>;
 extern template class FormatOf<FileContent::extended_axis>;
 
-/// Returns the last extension of a file name in lower case, with its dot. It treats ".nii.gz", ".hdr.gz" and ".img.gz"
-/// as single extensions.
+/// Returns the last extension of a file name in lower case, with its dot. The extensions ".nii.gz", ".hdr.gz" and
+/// ".img.gz" are treated as single extensions.
 [[nodiscard]] std::string file_extension(const std::filesystem::path& path);
 
 /// Returns the extensions of the formats of one kind of content, in the order of file_formats().

@@ -46,7 +46,7 @@ struct GltfMesh {
   /// of no triangle are left out. If there are texture coordinates, segments and points must be empty.
   std::span<const std::array<std::array<float, 2>, 3>> texture_coordinates = {};
   /// Bytes of a PNG file; may be empty. A texture requires texture coordinates. Its colours are shown unchanged,
-  /// without lighting (KHR_materials_unlit). They are interpolated bilinearly, without mipmaps, and clamped at the
+  /// without lighting (KHR_materials_unlit). Colours are interpolated bilinearly, without mipmaps, and clamped at the
   /// borders.
   std::span<const std::byte> texture = {};
   GltfExtras extras = {};
@@ -57,8 +57,8 @@ struct GltfMesh {
 /// Positions are in single precision. If the distance of the mesh from the origin is larger than the mesh, positions
 /// are relative to the middle of its box. The translation of the glTF node then contains that middle in double
 /// precision. Axes and units are not converted (glTF expects metres, with y up). Triangles are visible from both sides.
-/// @throws InvalidMesh if a corner has the index of a missing vertex, or the mesh has more than 2^31 - 1 vertices. It
-/// is also thrown if a written position is not finite or beyond single precision.
+/// @throws InvalidMesh if a corner has the index of a missing vertex, or the mesh has more than 2^31 - 1 vertices.
+/// InvalidMesh is also thrown if a written position is not finite or beyond single precision.
 /// @throws InvalidOption if other members are not as described at GltfMesh and GltfAttribute.
 /// @throws FileError if the file would have more than 2^32 - 1 bytes, the limit of the format, or the system reports an
 /// error.

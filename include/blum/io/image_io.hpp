@@ -57,8 +57,7 @@ struct ImageFile {
 /// than 2^31 - 1 voxels.
 /// @throws InvalidOption for another extension.
 /// @throws OutOfMemory. Sizes in a header are compared with the length of the file before memory is allocated.
-/// Cost: O(voxels) time. It needs no memory in addition to the image, except for values that are text, scaled or in
-/// Fortran order.
+/// Cost: O(voxels) time. Additional memory is needed only for values that are text, scaled or in Fortran order.
 [[nodiscard]] VoxelImage read_image(const std::filesystem::path& path);
 
 /// Reads an image from memory. In messages, `name` is used as the name of the file. An image whose data are in another

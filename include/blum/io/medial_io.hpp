@@ -47,23 +47,23 @@ struct MedialFile {
 ///   `.vtp`, `.ply`, `.npz`  Everything, with the metadata.
 ///   `.obj`                  Positions, triangles, and edges of no triangle.
 ///   `.ma`                   Text: counts, then lines `v x y z radius`, `e` for each edge (also for sides of triangles,
-///                           each once) and `f`. This is the format of Q-MAT for medial meshes. It has no metadata.
+///                           each once) and `f`. The .ma format is that of Q-MAT for medial meshes. It has no metadata.
 ///
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension, a column of MedialView with a wrong type, or a .ma file without radii.
 /// @throws InvalidOption for metadata that are not finite or out of range.
 /// @throws InvalidGrid if the grid in the metadata is not valid.
 /// @throws InvalidMesh if the complex has an index of a missing vertex, or an edge or triangle with the same vertex
-/// twice. It is also thrown if the complex has a number that is not finite, a negative radius, or a sheet index out of
-/// range.
+/// twice. InvalidMesh is also thrown if the complex has a number that is not finite, a negative radius, or a sheet
+/// index out of range.
 /// @throws FileError, Cancelled.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
 
 /// Writes a medial axis with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files can hold the
-/// axes of all angles. They are stored as the further complex `nested`, with additional columns (float32). For a vertex
-/// or triangle, `until` is the theta at which it vanishes (inf: never). For an edge, `from` and `until` are the values
-/// of theta between which it has its role. `nested_theta` in the metadata is the least theta.
+/// axes of all angles. The axes of all angles are stored as the further complex `nested`, with additional columns
+/// (float32). For a vertex or triangle, `until` is the theta at which it vanishes (inf: never). For an edge, `from` and
+/// `until` are the values of theta between which it has its role. `nested_theta` in the metadata is the least theta.
 /// @throws InvalidOption for other formats.
 /// @param least_theta  MedialAxis::least_theta(), degrees.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,

@@ -64,9 +64,9 @@ struct MeshFile {
 ///
 /// Cost: O(file size) time and memory; the whole file is held in memory while it is read.
 /// @throws FileError if the file cannot be read, or its extension is not known.
-/// @throws FormatError with the file and the line (text) or byte (binary). It is thrown for broken or truncated
-/// content, counts that exceed the size of the file, and indices out of range. It is also thrown for faces with fewer
-/// than 3 corners, and for coordinates that are not finite.
+/// @throws FormatError with the file and the line (text) or byte (binary). FormatError is thrown for broken or
+/// truncated content, counts that exceed the size of the file, and indices out of range. FormatError is also thrown for
+/// faces with fewer than 3 corners, and for coordinates that are not finite.
 /// @throws InvalidOption for a weld tolerance that is negative or not finite, or a format that is not read.
 /// @throws OutOfMemory.
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});

@@ -41,9 +41,9 @@ namespace blum {
 ///
 ///   `.ply`, `.vtp`  As write_complex() does.
 ///   `.npz`          An array `points` [n, 3], one array for each column under its name, and `metadata`, a JSON object.
-///   `.csv`          A row of names: x, y, z, then those of the columns. Then follows a row for each point. A column of
-///                   three numbers has the names NAME_x, NAME_y, NAME_z. A column of two, or more than three, numbers
-///                   has NAME_0, NAME_1, ... CSV files have no metadata.
+///   `.csv`          A row of names: x, y, z, then those of the columns. The row of names is followed by a row for each
+///                   point. A column of three numbers has the names NAME_x, NAME_y, NAME_z. A column of two, or more
+///                   than three, numbers has NAME_0, NAME_1, ... CSV files have no metadata.
 ///
 /// Numbers in text are exact.
 /// @param metadata  if the key `content` is missing, it is added with the text "points". Functions that read axes and

@@ -22,11 +22,11 @@ namespace blum {
 
 /// Colours and units for files of surface maps.
 struct SurfaceMapWriteOptions {
-  /// Distances at the two ends of the colour scale of .png and .glb files. They must be finite, and the first less than
-  /// the second. The default upper end is the largest finite distance. The default lower end is 0. If the map is signed
-  /// and its smallest distance is negative, the default lower end is this smallest distance. For thickness, the default
-  /// lower end is the smallest thickness, or 0 if all values are equal. If the upper end is not above the lower end,
-  /// the upper end is set to the lower end plus 1.
+  /// Distances at the two ends of the colour scale of .png and .glb files. Both distances must be finite, and the first
+  /// less than the second. The default upper end is the largest finite distance. The default lower end is 0. If the map
+  /// is signed and its smallest distance is negative, the default lower end is this smallest distance. For thickness,
+  /// the default lower end is the smallest thickness, or 0 if all values are equal. If the upper end is not above the
+  /// lower end, the upper end is set to the lower end plus 1.
   std::optional<std::pair<double, double>> range = {};
   /// Units of distances, for example "mm", for the colour bar and the metadata; may be empty.
   std::string units = {};

@@ -29,12 +29,13 @@ namespace blum {
 ///               VoronoiGraph, under the same names as in C++.
 ///   `.graphml`  An undirected graph for programs such as networkx, Gephi, igraph and yEd. The attribute `element` is
 ///               the kind of a node or edge. Examples of nodes are `region3` (the region of site 3, with the site's
-///               `kind`), `wall0`, `seam0` and `junction0`. An edge `incidence` joins a region and one of its walls. It
-///               may also join a wall and one of its seams, or a seam and one of its junctions. If the graph has
-///               regions, an edge `neighbours` joins two neighbouring regions. Its `area` is the area of the walls
-///               between the two regions. In a graph of patches, nodes `region3` are those of patches, with the
-///               patch's `kind`. The other attributes are all members that are numbers or words, with their
-///               names; components of vectors end with _x, _y, _z. Metadata are attributes of the graph.
+///               `kind`), `wall0`, `seam0` and `junction0`. An edge `incidence` joins a region and one of its walls.
+///               Edges `incidence` also join a wall and one of its seams, and a seam and one of its junctions. If the
+///               graph has regions, an edge `neighbours` joins two neighbouring regions. The attribute `area` of this
+///               edge is the area of the walls between the two regions. In a graph of patches, nodes `region3` are
+///               those of patches, with the patch's `kind`. The other attributes are all members that are numbers or
+///               words, with their names; components of vectors end with _x, _y, _z. Metadata are attributes of the
+///               graph.
 ///
 /// A file appears under its name only when it is complete.
 /// @param graph     result of voronoi_graph().

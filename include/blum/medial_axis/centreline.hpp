@@ -166,9 +166,9 @@ struct Centrelines {
                                      const CentrelineOptions& options = {}, const Context& context = {});
 
 /// Returns warnings about the centrelines of an image with this grid. A warning may report that the image has a single
-/// layer of voxels (WarningCode::single_layer), or that a label has no voxels (WarningCode::nothing_found). It may also
-/// report that the topology of a label differs from that of the label's curves (WarningCode::other_topology). At most
-/// six warnings are returned. If more apply, the sixth warning gives the number of labels that have no separate
+/// layer of voxels (WarningCode::single_layer), or that a label has no voxels (WarningCode::nothing_found). A warning
+/// may also report that the topology of a label differs from that of the label's curves (WarningCode::other_topology).
+/// At most six warnings are returned. If more apply, the sixth warning gives the number of labels that have no separate
 /// warning.
 [[nodiscard]] std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid);
 

@@ -148,7 +148,8 @@ struct Description<MedialAxisReport> {
 };
 
 /// Medial axis of a solid for all angles theta at once. The cells of the solid collapse to a complex of polygons, edges
-/// and vertices. This class stores that complex, and the order in which it collapses further while theta rises.
+/// and vertices. The class MedialAxis stores this complex, and the order in which the complex collapses further while
+/// theta rises.
 class MedialAxis {
  public:
   MedialAxis(MedialAxis&&) noexcept;
@@ -222,16 +223,16 @@ class MedialAxis {
 /// (docs/guide/medial-axes.md contains the full rule.) Sheets of an image's axis are numbered in the order of their
 /// first triangles.
 ///
-/// If two walls (parts of the surface around footprints) are found for a vertex, the vertex lies on their bisector.
-/// Such a vertex is at most 0.7 voxels from a corner of a voxel, along each axis of the grid. If no such point is
-/// found, the vertex may lie elsewhere in the solid (docs/theory/medial-axis.md). The radius is the distance to the
-/// surface, exact to 1e-9 of the solid's extent.
+/// If two walls (parts of the surface around footprints) are found for a vertex, the vertex lies on their bisector. A
+/// vertex on a bisector is at most 0.7 voxels from a corner of a voxel, along each axis of the grid. If no point on a
+/// bisector is found, the vertex may lie elsewhere in the solid (docs/theory/medial-axis.md). The radius is the
+/// distance to the surface, exact to 1e-9 of the solid's extent.
 ///
 /// @return      the same bytes for any number of threads. Check report().topology_matches, which is true if the axis
 /// has the topology of the solid. Sites of a mesh are those of SiteTable(mesh). For an image, distances are measured to
 /// the faces between selected voxels and voxels that are not selected. Sites of an image are the voxels on the far side
-/// of these faces. These voxels are not selected, or lie just outside the image. A voxel outside the image has the id
-/// of the image's voxel next to it.
+/// of these faces. A site of an image is a voxel that is not selected, or lies just outside the image. A voxel outside
+/// the image has the id of the image's voxel next to it.
 /// @throws InvalidMesh if no interior of a body is found (the message mentions triangles that face inwards). It is also
 /// thrown if the longest side of the box around the solid is below 5e-7 of the largest coordinate. InvalidOption;
 /// OutOfMemory; Cancelled.

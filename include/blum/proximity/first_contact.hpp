@@ -48,8 +48,8 @@ struct FirstContact {
   [[nodiscard]] double time() const;
 };
 
-/// Converts a first contact to collisions of a scene, for example to write it to a file. The result contains this one
-/// pair. Its `box_pairs` and `exact_tests` are 0.
+/// Converts a first contact to collisions of a scene, for example to write it to a file. The result contains only the
+/// pair of the contact. The counts `box_pairs` and `exact_tests` are 0.
 [[nodiscard]] SceneCollisions collisions_of(const FirstContact& contact);
 
 /// Returns the first contact of a moving mesh with itself: the earliest of all pairs that continuous_collisions()

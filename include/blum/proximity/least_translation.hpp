@@ -49,8 +49,8 @@ struct LeastTranslation {
   /// which may lower it by 1e-14 times the extent of both solids. The bound is 0 if the solids are apart or touch.
   double lower = 0;
   double upper = 0;  ///< Length of `translation`, mesh units.
-  /// Translation that separates the first solid from the second. After it, the interiors of both solids are disjoint,
-  /// except for rounding.
+  /// Translation of the first solid. After this translation, the interiors of both solids are disjoint, except for
+  /// rounding.
   Vec3d translation;
   /// True if both solids are convex, except for rounding. If true, the bounds differ only by rounding, unless an option
   /// ended the search early. If false, the true length may lie anywhere between the bounds.

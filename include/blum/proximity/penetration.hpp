@@ -17,8 +17,8 @@ namespace blum {
 
 struct PenetrationOptions {
   /// Largest excess of the true depth over the reported depth, as a fraction of the reported depth: 1e-6 to 1. The
-  /// search ends after 200,000 points, even if Penetration::depth_bound still exceeds this limit. This may happen if a
-  /// common part is bounded by curved surfaces and is much wider than deep.
+  /// search ends after 200,000 points, even if Penetration::depth_bound still exceeds this limit. The limit may be
+  /// exceeded if a common part is bounded by curved surfaces and is much wider than deep.
   double depth_tolerance = 0.01;
 };
 
@@ -51,7 +51,7 @@ struct Penetration {
   double depth_bound = 0;  ///< Upper bound on the true depth, proven except for rounding.
   /// Unit vector. If the first object moves by `depth` in this direction, `deep_point` and `surface_point` coincide.
   Vec3d direction;
-  Vec3d deep_point;            ///< Deepest point: a point of one object's surface in the other object.
+  Vec3d deep_point;            ///< Deepest point, on the surface of one object and inside the other object.
   Vec3d surface_point;         ///< Point of the other object's surface that is closest to `deep_point`.
   bool is_first_deep = false;  ///< True if `deep_point` lies on the first object's surface, false if on the second's.
   /// Triangle that contains `deep_point`: its index in the object whose surface contains this point.

@@ -139,7 +139,8 @@ struct ProximityPairs {
 ///
 /// Several threads may call queries at the same time, but not during updates. All queries throw Cancelled, and
 /// InvalidOption if an object does not exist. Queries throw InvalidMesh if more than 2^29 pairs of primitives touch, or
-/// are so close that they must be compared. This happens, for example, if many triangles of a mesh coincide.
+/// are so close that they must be compared. For example, a mesh in which many triangles coincide may have too many
+/// pairs.
 class ProximityScene {
  public:
   /// Constructs an empty scene.
@@ -194,22 +195,22 @@ class ProximityScene {
                                           const Context& context = {}) const;
 
   /// Returns true if two objects meet, whatever their layers. Objects meet if a primitive of the first object and a
-  /// primitive of the second object have a common point. The search stops at the first such pair. Only surfaces are
-  /// compared, so a solid in the interior of another solid does not meet it. The answer is exact, like that of
+  /// primitive of the second object have a common point. The search stops at the first pair that meets. Only surfaces
+  /// are compared, so a solid in the interior of another solid does not meet it. The answer is exact, like that of
   /// collisions(). If both objects are the same, returns true if collisions() would find a pair within the object.
   /// @throws as collisions(), except OutOfMemory.
   /// Cost: 0.2 to 30 microseconds for objects that are apart or meet in many places. Objects that are close to each
   /// other in many places take longer. Most searches for two objects allocate no memory.
   [[nodiscard]] bool meets(ObjectId first, ObjectId second, const Context& context = {}) const;
-  /// Returns true if the objects of any compared pair meet. The search stops at the first such pair.
+  /// Returns true if the objects of any compared pair meet. The search stops at the first pair that meets.
   /// @throws as meets() of two objects.
   [[nodiscard]] bool meets(const Context& context = {}) const;
   /// Tests the second object at each of the given transforms. Entry k of the result is 1 if the object meets the first
-  /// object at transforms[k], otherwise 0. It equals the result of meets() after update(second, transforms[k]). The
-  /// scene does not change.
+  /// object at transforms[k], otherwise 0. Entry k equals the result of meets() after update(second, transforms[k]).
+  /// The scene does not change.
   /// @param transforms of the second object; each replaces the object's present transform.
-  /// @throws InvalidOption if a transform is not rigid to 1e-9, is a reflection, or has a translation beyond 1e70. It
-  /// is also thrown if both objects are the same. Otherwise as meets().
+  /// @throws InvalidOption if a transform is not rigid to 1e-9, is a reflection, or has a translation beyond 1e70.
+  /// InvalidOption is also thrown if both objects are the same. Otherwise as meets() of two objects.
   /// Cost: that of meets() for each transform, divided by the number of threads. A transform takes about 0.2
   /// microseconds if the primitives that met at the previous transform meet again. Progress counts the transforms.
   [[nodiscard]] std::vector<std::uint8_t> meets(ObjectId first, ObjectId second,
@@ -217,8 +218,8 @@ class ProximityScene {
                                                 const Context& context = {}) const;
 
   /// Returns a pair for each primitive of the scene: the primitive, and the closest of all primitives that it is
-  /// compared with. The result omits primitives that have no such partner within max_distance. Pairs are sorted by
-  /// ascending (first object, first primitive). (Sud 2006, ch. 4: the N-body distance query.)
+  /// compared with. The result omits primitives for which no compared primitive lies within max_distance. Pairs are
+  /// sorted by ascending (first object, first primitive). (Sud 2006, ch. 4: the N-body distance query.)
   [[nodiscard]] ProximityPairs closest_primitives(double max_distance = std::numeric_limits<double>::infinity(),
                                                   const Context& context = {}) const;
 
@@ -230,9 +231,9 @@ class ProximityScene {
   [[nodiscard]] ProximityPairs closer_than(double distance, const Context& context = {}) const;
 
   /// Returns all compared pairs of primitives that have a point in common, as closer_than(0). Within one object, it
-  /// also returns pairs of triangles that have more in common than a shared corner or edge. Such triangles are folded
-  /// onto each other, or cross away from the shared corner or edge. The point reported for such a pair is a shared
-  /// corner.
+  /// also returns pairs of triangles that have more in common than a shared corner or edge. These are triangles that
+  /// are folded onto each other, or cross away from the shared corner or edge. The point that is reported for a pair
+  /// with a common vertex is a shared corner.
   [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
 
   /// Returns all collisions of compared objects while objects move: pairs of a vertex and a face, and pairs of two
@@ -260,12 +261,13 @@ class ProximityScene {
   /// touch.
   ///
   /// If one solid lies in the other, the depth is the largest distance of the inner solid's points from the outer
-  /// solid's surface. If faces of both solids coincide, depths depend on which object is first, by up to a factor of 2
-  /// (docs/theory/proximity.md). If both objects are the same, returns the connected regions in which the winding
+  /// solid's surface. If faces of both solids coincide, the order of the objects changes the depths by up to a factor
+  /// of 2 (docs/theory/proximity.md). If both objects are the same, returns the connected regions in which the winding
   /// number of the object's surface is 2 or more. The shells of an object may cross or touch. One shell may also lie in
   /// another and face the same way. In these cases, the object is the union of the solids that its shells bound.
-  /// @throws InvalidMesh if an object is not closed, or faces inwards. It is also thrown if an object is further from
-  /// the origin than about 1e9 times its size. Rounding then hides the object's shape. InvalidOption; Cancelled.
+  /// @throws InvalidMesh if an object is not closed, or faces inwards. InvalidMesh is also thrown if an object is
+  /// further from the origin than about 1e9 times its size, because rounding then hides the object's shape.
+  /// InvalidOption; Cancelled.
   /// Cost: about 2 microseconds per triangle and 0.1 ms per pair of triangles that cross. The depth of each common part
   /// takes up to 2 s, or more if the part is much wider than deep. If an object overlaps itself, a common part of n
   /// triangles, from s connected parts of the surface, takes up to n * s microseconds.
@@ -291,9 +293,9 @@ class ProximityScene {
                                                    const Context& context = {}) const;
 
   /// Returns the signed distance of two solids, mesh units. The result is positive if the solids are apart, and 0 if
-  /// they touch. If the solids overlap, the result is minus the largest depth. If the boxes of both objects are apart,
-  /// their surfaces may be open. If both objects are the same, and every two primitives of the object share a vertex,
-  /// the result is infinite.
+  /// they touch. If the solids overlap, the result is minus the largest depth. If the boxes of the two objects are
+  /// apart, the surfaces of the objects may be open. If both objects are the same, and every two primitives of the
+  /// object share a vertex, the result is infinite.
   /// @throws as penetration().
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;

@@ -17,8 +17,8 @@
 namespace blum {
 
 struct HausdorffOptions {
-  /// Largest width of the interval that contains the distance, > 0, mesh units. Unset: a ten-thousandth of the diagonal
-  /// of the box around both meshes.
+  /// Largest width of the interval that contains the distance, > 0, mesh units. Default: 1/10,000 of the diagonal of
+  /// the box around both meshes.
   std::optional<double> tolerance = {};
   /// Largest number of points of a mesh that the search stores: the mesh's vertices, and points added between them. If
   /// more would be needed, the search stops with a wider interval. Each point takes up to 150 bytes. Values above
@@ -45,7 +45,8 @@ struct Description<HausdorffOptions> {
 struct DirectedHausdorff {
   double lower = 0;  ///< mesh units
   double upper = 0;
-  /// A point of the mesh whose distance is at least `lower`, and the point of the other mesh that is closest to it.
+  /// A point of the mesh whose distance from the other mesh is at least `lower`, and its closest point on the other
+  /// mesh.
   std::array<Vec3d, 2> points;
   /// index of the primitive of the mesh that contains the first point; triangles are numbered first, then segments,
   /// then points
@@ -71,13 +72,13 @@ struct Description<DirectedHausdorff> {
   };
 };
 
-/// Interval, from `lower` to `upper`, that contains the Hausdorff distance of two meshes: the larger one of both
+/// Interval, from `lower` to `upper`, that contains the Hausdorff distance of two meshes: the larger of the two
 /// one-sided distances.
 struct HausdorffDistance {
   double lower = 0;  ///< Mesh units.
   double upper = 0;
-  /// A point of the first mesh, then a point of the second mesh. They are at least `lower` apart, and one of them is
-  /// the closest point of its mesh to the other point.
+  /// A point of the first mesh, then a point of the second mesh. The two points are at least `lower` apart, and one of
+  /// them is the closest point of its mesh to the other point.
   std::array<Vec3d, 2> points;
   DirectedHausdorff forward;   ///< distance of the first mesh from the second
   DirectedHausdorff backward;  ///< distance of the second mesh from the first
@@ -91,8 +92,8 @@ struct Description<HausdorffDistance> {
       Member{"lower", &HausdorffDistance::lower, "mesh units", "lower bound of the distance"},
       Member{"upper", &HausdorffDistance::upper, "mesh units", "upper bound of the distance"},
       Member{"points", &HausdorffDistance::points, "mesh units",
-             "point of the first and of the second mesh: one is at least 'lower' from the other mesh, the other is its "
-             "closest point"},
+             "a point of each mesh, at least 'lower' apart; one of them is the closest point of its mesh to the other "
+             "point"},
       Member{"forward", &HausdorffDistance::forward, "", "distance of the first mesh from the second"},
       Member{"backward", &HausdorffDistance::backward, "", "distance of the second mesh from the first"},
   };

@@ -70,7 +70,7 @@ struct SurfaceAtlas {
 /// @param width, height  size of the texture in texels, each 1 to 16384.
 /// @throws InvalidMesh, also if the mesh has no triangles.
 /// @throws InvalidOption if a size or an index is out of range, or if `corners` does not have one entry per triangle.
-/// It is also thrown if a position that a triangle uses is not finite, or lies outside the texture.
+/// InvalidOption is also thrown if a position that a triangle uses is not finite, or lies outside the texture.
 /// @throws InvalidOption if two triangles cover the middle of the same texel; the message contains the indices of both
 /// triangles.
 /// @throws Cancelled.

@@ -77,8 +77,8 @@ struct SurfaceMap {
   /// Distance at each texel's point, mesh units. Finite values of this and all other float members are at most 3e38.
   /// The distance is infinite if nothing lies within max_distance, and NaN for texels of no triangle.
   Buffer<float> distance;
-  /// Vector from each texel's point to the closest point, mesh units. For ray_thickness, it ends at the far side; for
-  /// ball_thickness, at the other point that the ball touches. Zero if no such point was found.
+  /// Vector from each texel's point to the closest point, mesh units. For ray_thickness, the vector ends at the far
+  /// side; for ball_thickness, at the other point that the ball touches. The vector is zero if no end point was found.
   Buffer<Vec3f> vector;
   /// Site that contains the closest point; none() if no closest point was found. Sites are numbered as in the SiteTable
   /// of the other mesh, or of the mesh itself.
@@ -135,8 +135,8 @@ struct SurfaceMap {
 [[nodiscard]] SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& options = {},
                                            const Context& context = {});
 
-/// Computes maps of surfaces that move. It reuses the atlas, and all data that depend only on the connectivity of the
-/// meshes.
+/// Computes maps of surfaces that move. A mapper reuses the atlas, and all data that depend only on the connectivity of
+/// the meshes.
 class SurfaceMapper {
  public:
   /// @throws as surface_distance_map().

@@ -14,8 +14,8 @@
 namespace blum {
 
 /// Statistics of the values of a surface map, weighted by area. Each texel stands for the parts of triangles that lie
-/// in the texel's square. For distances, the value at the centroid of such a part is extrapolated from the texel's
-/// point, along the gradient. Texels without a value (infinite distance) contribute only to `area`. The statistics are
+/// in the texel's square. For distances, the value at the centroid of a part is extrapolated from the texel's point,
+/// along the gradient. Texels without a value (infinite distance) contribute only to `area`. The statistics are
 /// estimates. For distances to another mesh, surface_deviation() also gives bounds on the errors.
 struct SurfaceMapStatistics {
   static constexpr std::array<double, 7> percents = SurfaceDeviation::percents;

@@ -22,16 +22,16 @@ namespace blum {
 /// Definition of thickness at a point of a triangle. The triangle's normal points out of the solid.
 enum class ThicknessKind : std::uint8_t {
   /// A ray starts at the point, in the direction opposite to the normal. The thickness is the distance to the first
-  /// other triangle through which the ray leaves the solid. The thickness is infinite if no such triangle exists,
-  /// because the mesh is open or faces inwards.
+  /// other triangle through which the ray leaves the solid. The thickness is infinite if the ray leaves the solid
+  /// through no other triangle, because the mesh is open or faces inwards.
   ray,
   /// Let m be the normal, at the point, of the smooth surface that the mesh approximates. The thickness is the diameter
   /// of the largest ball that touches the surface at the point from inside. Its centre lies in the direction opposite
   /// to m. The ball contains no point of a triangle whose normal differs from m by `separation` or more. The normal m
   /// is interpolated between normals at the three corners of the point's triangle. A corner's normal is the mean of the
-  /// normals of triangles at the corner, weighted by their angles. This mean includes only triangles whose normal
-  /// differs from that of the point's triangle by less than `separation`. The thickness is infinite if nothing limits
-  /// the ball.
+  /// normals of triangles at the corner, weighted by their angles. The mean includes only triangles whose normal
+  /// differs from the normal of the point's triangle by less than `separation`. The thickness is infinite if nothing
+  /// limits the ball.
   ball
 };
 
@@ -44,9 +44,9 @@ struct Description<ThicknessKind> {
 struct ThicknessOptions {
   ThicknessKind kind = ThicknessKind::ray;
   /// For balls: degrees, 0 to 180. A triangle does not limit a point's ball if its normal differs by less than this
-  /// angle from the surface normal at the point. Such triangles count as parts of the same smooth surface. With 0, the
-  /// ball touches the triangle itself, and lies inside the polyhedron. The ball then shrinks to nothing at each convex
-  /// edge, also at edges that only approximate a smooth surface.
+  /// angle from the surface normal at the point. Triangles with a smaller difference are treated as parts of the same
+  /// smooth surface. With 0, the ball touches the triangle itself, and lies inside the polyhedron. The ball then
+  /// shrinks to nothing at each convex edge, also at edges that only approximate a smooth surface.
   double separation = 30;
 };
 

@@ -24,9 +24,9 @@ namespace blum {
 /// contact gives the other patch, if the angle between the two contacts is at least half the separation angle of the
 /// triangle. So adjacent facets on one side of a sheet are not taken for two sides.
 ///
-/// A triangle that crosses the border between two pairs of patches gets the pair at its middle. This happens in
-/// decimated axes, where a sheet continues smoothly from one pair to the next. If the exact borders matter, use an axis
-/// with all vertices.
+/// A triangle that crosses the border between two pairs of patches gets the pair at its middle. Decimated axes have
+/// triangles across borders, because a sheet continues smoothly from one pair of patches to the next. If the exact
+/// borders matter, use an axis with all vertices.
 /// @param axis     vertices with the column `radius`, triangles with `separation_angle`. If `separation_angle` is
 /// missing, all angles are 0.
 /// @param mesh     as for polyhedron_sites().

@@ -8,8 +8,8 @@
 
 namespace blum {
 
-/// Adds the twelve edges of each failing cube to a complex. These edges show where a complex that is not certified may
-/// be wrong.
+/// Adds the twelve edges of each failing cube to a complex. The edges show where a complex that is not certified may be
+/// wrong.
 ///
 /// @param complex  result of voronoi_complex(), without edges. At the new vertices, the columns `site_0` and `site_1`
 /// (if present) are -1, and all other columns are 0. Edges get the column `obstacle` (int32): the VoronoiObstacle of

@@ -195,11 +195,11 @@ struct Description<OpenVoronoiPlace> {
 
 struct VoronoiReport {
   /// True if every cube passes the test, no signs contradict each other, and the Betti numbers are the expected ones.
-  /// Then the complex provably has the homology of the requested part of the exact diagram. If the diagram is exact or
-  /// traced, there are no cubes, and only the Betti numbers are checked.
+  /// If true, the complex provably has the homology of the requested part of the exact diagram. If the diagram is exact
+  /// or traced, there are no cubes, and only the Betti numbers are checked.
   bool certified = false;
-  /// True if all bodies are convex, and the method was not `cubes`. Then each sheet, seam and junction is that of the
-  /// exact diagram of the bodies' planes. See VoronoiReport::flatness and VoronoiReport::joined.
+  /// True if all bodies are convex, and the method was not `cubes`. If true, each sheet, seam and junction is that of
+  /// the exact diagram of the bodies' planes. See VoronoiReport::flatness and VoronoiReport::joined.
   bool exact = false;
   double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
   double joined = 0;    ///< If exact or traced: junctions and seams within this distance are joined, mesh units.
@@ -217,9 +217,9 @@ struct VoronoiReport {
   /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
   /// between vertices, mesh units.
   double chord = 0;
-  /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
-  /// diagram of a polyhedron with flat faces. The corners of this polyhedron are within `moved` of the corners of the
-  /// mesh.
+  /// True if traced, and all junctions and seams are proven. If true, each sheet, seam and junction is that of the
+  /// exact diagram of a polyhedron with flat faces. The corners of this polyhedron are within `moved` of the corners of
+  /// the mesh.
   bool proven = false;
   /// If traced: largest displacement of a corner to make the faces flat, mesh units. 0 if the given faces are flat,
   /// except for rounding.
@@ -227,8 +227,8 @@ struct VoronoiReport {
   /// If traced: numbers of junctions inside the solid and of seams, in the whole diagram.
   std::size_t junctions = 0;
   std::size_t seams = 0;
-  /// If traced: numbers of junctions and of seams that are proven. They exist, as traced, in the exact diagram of a
-  /// polyhedron with flat faces (see `proven`).
+  /// If traced: numbers of junctions and of seams that are proven. Proven junctions and seams exist, as traced, in the
+  /// exact diagram of a polyhedron with flat faces (see `proven`).
   std::size_t proven_junctions = 0;
   std::size_t proven_seams = 0;
   /// If traced: junctions and pieces of seams that are not proven. All other junctions are proven. For each seam that
@@ -248,8 +248,8 @@ struct VoronoiReport {
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
   std::size_t reflex_vertices = 0;  ///< Reflex vertices among the sites.
-  /// Reflex vertices whose dual cones (see polyhedron_sites()) are thinner than 1e-3 radians. The region of such a
-  /// vertex is a needle with a width below 1e-3 of its length. The complex represents it as part of walls.
+  /// Reflex vertices whose dual cones (see polyhedron_sites()) are thinner than 1e-3 radians. The region of a thin
+  /// vertex is a needle with a width below 1e-3 of its length. The complex represents the needle as part of walls.
   std::size_t thin_vertices = 0;
   std::size_t grids = 0;              ///< Number of positions of the grid that were tried.
   std::size_t cubes = 0;              ///< Number of cubes that meet the solid, and are not split.
@@ -343,9 +343,10 @@ struct VoronoiComplex {
   ///
   /// Columns of vertices: `radius` (float64, mesh units) is the distance from the closest site, 0 on the surface.
   /// `footprint_0` and `footprint_1` (3 x float64) are the closest points of the surface. If more than two closest
-  /// points exist, the two with the largest angle between them are stored. If only one exists, both columns contain
-  /// this point. `site_0` and `site_1` (int32) are the sites of the footprints in the SiteTable. `separation_angle`
-  /// (float64, degrees) is the angle between the footprints, seen from the vertex.
+  /// points exist, the two with the largest angle between them are stored. If only one closest point exists,
+  /// `footprint_0` and `footprint_1` both contain this point. `site_0` and `site_1` (int32) are the sites of the
+  /// footprints in the SiteTable. `separation_angle` (float64, degrees) is the angle between the footprints, seen from
+  /// the vertex.
   ///
   /// Columns of triangles: `site_a` and `site_b` (int32) are the sites of the regions on the two sides, the smaller
   /// site first. On the surface, `site_a` is -1. `separation_angle` (float32, degrees) is the angle between the two
@@ -379,10 +380,10 @@ struct VoronoiComplex {
 /// cuts space into cubes. The closest sites along the edges of cubes follow from the order of roots, or from exact
 /// signs if doubles do not decide. Squares between cubes are split into smaller squares until the border of each square
 /// determines K in the square. A cube passes the test if its boundary proves that all components of K in the cube are
-/// acyclic. Otherwise, the cube is split.
+/// acyclic. A cube that does not pass is split.
 ///
-/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell).
-/// This complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
+/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell). The
+/// order complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
 /// 2006, 5.3 and 5.4; theorem and proof: docs/theory/voronoi.md.)
 ///
 /// If VoronoiReport::certified is false, parts of the complex may be missing or wrong.
@@ -390,7 +391,7 @@ struct VoronoiComplex {
 /// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
 /// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
 /// of the mesh. Cubes use triangles as given, so a face that rounding has bent becomes several sites.
-/// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
+/// @throws InvalidMesh if the solid does not meet these conditions; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
 /// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000
 /// triangles need thousands to tens of thousands of cubes.
@@ -398,7 +399,7 @@ struct VoronoiComplex {
                                              const Context& context = {});
 
 /// Computes the Voronoi diagram of the solid that a mesh bounds, found by Solid::of(). Triangles that face the wrong
-/// way are reversed. This does not change the numbers of sites.
+/// way are reversed. Reversing triangles does not change the numbers of sites.
 /// @param mesh  without segments and points. The mesh must not cross itself, because Solid::of() would then replace the
 /// surface. For a mesh that crosses itself, pass Solid::of(mesh) to voronoi_complex(), and use the sites of the Solid's
 /// surface.

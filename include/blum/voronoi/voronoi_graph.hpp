@@ -109,10 +109,10 @@ struct Description<VoronoiGraph> {
 
 /// Returns the regions, walls, seams and junctions of a result of voronoi_complex(). A wall consists of triangles
 /// between the same two sites that are connected through vertices. A seam consists of edges whose triangles have three
-/// or more sites. A seam ends at each of its vertices that does not belong to exactly two such edges. Regions, walls
-/// and seams narrower than a cube may be missing. Junctions that are closer together than the side of a cube may become
-/// one. If the complex is exact (VoronoiReport::exact), the column `junction` marks the junctions, and nothing is
-/// missing.
+/// or more sites. A seam ends at each of its vertices that does not belong to exactly two edges of seams. Regions,
+/// walls and seams narrower than a cube may be missing. Junctions that are closer together than the side of a cube may
+/// become one. If the complex is exact (VoronoiReport::exact), the column `junction` marks the junctions, and nothing
+/// is missing.
 ///
 /// @param complex  with the columns `site_a` and `site_b`.
 /// @throws InvalidOption if a column is missing; InvalidMesh with the text of problem_of(complex); Cancelled.

@@ -41,13 +41,13 @@ struct Description<VoronoiPatchOptions> {
   };
 };
 
-/// Sites of one smooth part of a polyhedron's border, which together are treated as one site. There are three kinds:
+/// Sites of one smooth part of a polyhedron's border, which together are treated as one site. Patches have three kinds:
 ///
 ///   face    Faces that are connected through edges with small bends, and the reflex edges and vertices inside this
 ///           part of the border. For example, all sites of a cylinder's side.
 ///   edge    Connected reflex edges between the same two patches of faces, and the reflex vertices along them. For
 ///           example, the circle at the foot of a cylinder that stands on a plate.
-///   vertex  A reflex vertex between patches. It lies on no such chain of edges.
+///   vertex  A reflex vertex between patches that lies on no chain of reflex edges between two patches.
 struct VoronoiPatch {
   SiteKind kind = SiteKind::face;
   std::vector<std::int32_t> sites;         ///< Numbers of its sites as in voronoi_sites(), ascending.
@@ -68,9 +68,9 @@ struct Description<VoronoiPatch> {
 
 /// Returns the patches of the sites of a polyhedron. Patch k has the number k in `patch_a` and `patch_b` of
 /// add_patch_columns(), and in graphs of patches. Patches of faces come first, in the order of their first triangles,
-/// as in AxisGraph::patches. Then come patches of edges, and those of vertices, in the order of their smallest sites.
-/// The normal of a face is the mean normal of its triangles. A face without triangles belongs to no patch, because it
-/// was joined to another face (VoronoiReport::joined_faces).
+/// as in AxisGraph::patches. Patches of edges come next, and patches of vertices last, each in the order of their
+/// smallest sites. The normal of a face is the mean normal of its triangles. A face without triangles belongs to no
+/// patch, because it was joined to another face (VoronoiReport::joined_faces).
 /// With `patch_fit`, each patch of faces is a part of the shape that fits it. Flat faces that fit no sphere, cylinder
 /// or cone are planes. If several shapes fit, the shape with the largest part is chosen; for parts of similar size, the
 /// smallest deviation decides (docs/theory/voronoi.md, "Fitted patches"). Patches do not depend on the number of

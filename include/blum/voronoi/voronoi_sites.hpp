@@ -27,7 +27,7 @@ struct Description<SiteKind> {
 struct VoronoiSite {
   SiteKind kind = SiteKind::face;
   std::vector<std::uint32_t> triangles;  ///< For a face: its coplanar triangles, ascending. Otherwise empty.
-  /// For an edge: both ends, the smaller first. For a vertex: the vertex. For a face: empty.
+  /// For an edge: its two vertices, the smaller index first. For a vertex: the vertex. For a face: empty.
   std::vector<std::uint32_t> vertices;
 };
 
