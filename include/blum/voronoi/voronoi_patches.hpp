@@ -47,7 +47,7 @@ struct Description<VoronoiPatchOptions> {
 ///           part of the border. For example, all sites of a cylinder's side.
 ///   edge    Connected reflex edges between the same two patches of faces, and the reflex vertices along them. For
 ///           example, the circle at the foot of a cylinder that stands on a plate.
-///   vertex  A reflex vertex between patches that lies on no chain of reflex edges between two patches.
+///   vertex  A reflex vertex between patches. The vertex lies on no chain of reflex edges of the kind `edge`.
 struct VoronoiPatch {
   SiteKind kind = SiteKind::face;
   std::vector<std::int32_t> sites;         ///< Numbers of its sites as in voronoi_sites(), ascending.
