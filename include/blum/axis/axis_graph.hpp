@@ -23,9 +23,10 @@ struct AxisGraphOptions {
   /// Degrees. Faces of the mesh form one patch if they are connected through edges that bend by at most this angle.
   /// Used only if a mesh is given.
   double patch_angle = 30;
-  /// Threshold of the separation angle (theta) at which the axis was made, degrees. The graph treats triangles and
-  /// edges with at most this separation angle as existing for homotopy alone: only to preserve the homotopy type. Leave
-  /// the threshold unset if angles are unknown. If it is unset, the graph treats no triangle or edge in this way.
+  /// Threshold of the separation angle (theta) at which the axis was made, degrees. Triangles and edges with at most
+  /// this separation angle are treated as existing for homotopy alone: only to preserve the homotopy type. Leave the
+  /// threshold unset if angles are unknown. If the threshold is unset, no triangle or edge is treated as existing for
+  /// homotopy alone.
   std::optional<double> homotopy_angle = {};
   /// If true, each sheet of the graph lies between one pair of patches. Sheets are numbered as in the column
   /// `patch_sheet` of label_patch_sheets(). Triangles with the same patch on both sides are left out.
@@ -44,14 +45,14 @@ struct Description<AxisGraphOptions> {
       Member{"patch_angle", &AxisGraphOptions::patch_angle, "degrees",
              "if the mesh is given: largest bend at an edge between two faces of one patch", Range::between(0, 180)},
       Member{"homotopy_angle", &AxisGraphOptions::homotopy_angle, "degrees",
-             "threshold theta of the axis: triangles and edges with at most this angle exist for homotopy alone; if "
-             "unset, none do",
+             "threshold theta of the axis: triangles and edges with at most this angle are treated as existing for "
+             "homotopy alone",
              Range::between(0, 180)},
       Member{"of_patches", &AxisGraphOptions::of_patches, "",
              "true for sheets of pairs of patches, numbered as in the column patch_sheet of an axis with patches"},
       Member{"patch_fit", &AxisGraphOptions::patch_fit, "mesh units",
              "if the mesh is given: largest distance of vertices from the plane, sphere, cylinder or cone of their "
-             "patch; if unset, bends alone decide",
+             "patch; default: no shapes are fitted",
              Range::positive()},
   };
 };
@@ -128,9 +129,10 @@ struct Description<AxisJunction> {
 /// Seam or curve: a chain of edges from one junction to the next, or a closed loop without junctions.
 struct AxisLine {
   double length = 0;
-  double homotopy_length = 0;  ///< Length of its edges that exist for homotopy alone.
-  bool closed = false;         ///< True for a loop without junctions. A loop with one junction begins and ends at it.
-  std::optional<std::array<std::uint32_t, 2>> junctions;  ///< Indices of its first and last junction; unset if closed.
+  double homotopy_length = 0;  ///< Length of the line's edges that exist for homotopy alone.
+  bool closed = false;  ///< True for a loop without junctions; false for a loop that begins and ends at a junction.
+  /// Indices of the first and the last junction of the line; unset if the line is closed.
+  std::optional<std::array<std::uint32_t, 2>> junctions;
   AxisSpread radius;
   std::vector<std::uint32_t> sheets;  ///< Numbers of the sheets along a seam, or at the ends of a curve, ascending.
   /// Vertices of the axis, in order. A closed line repeats its first vertex at the end.
@@ -148,13 +150,14 @@ struct Description<AxisLine> {
       Member{"length", &AxisLine::length, "mesh units", "length of its edges"},
       Member{"homotopy_length", &AxisLine::homotopy_length, "mesh units",
              "length of its edges that exist for homotopy alone"},
-      Member{"closed", &AxisLine::closed, "", "true if it is a loop without a junction"},
-      Member{"junctions", &AxisLine::junctions, "", "junctions at its two ends; none if closed"},
-      Member{"radius", &AxisLine::radius, "mesh units", "distances from its points to the surface"},
+      Member{"closed", &AxisLine::closed, "", "true if the line is a loop without a junction"},
+      Member{"junctions", &AxisLine::junctions, "",
+             "junctions at the two ends of the line; none if the line is closed"},
+      Member{"radius", &AxisLine::radius, "mesh units", "distances from the points of the line to the surface"},
       Member{"sheets", &AxisLine::sheets, "",
              "seams: sheets that meet along the seam; curves: sheets at the ends of the curve"},
       Member{"vertices", &AxisLine::vertices, "",
-             "vertices of the axis, in order; if closed, the first one again at the end"},
+             "vertices of the axis, in order; a closed line repeats its first vertex at the end"},
       Member{"points", &AxisLine::points, "mesh units", "positions of the vertices"},
       Member{"radii", &AxisLine::radii, "mesh units", "radii of the vertices"},
       Member{"arc_length", &AxisLine::arc_length, "mesh units", "arc length from the first vertex to each vertex"},
@@ -182,15 +185,15 @@ struct Description<AxisPatch> {
       Member{"normal", &AxisPatch::normal, "",
              "unit vector in the direction of the mean normal over the area; 0 if undefined, as for a closed surface"},
       Member{"shape", &AxisPatch::shape, "",
-             "plane, sphere, cylinder or cone that fits the faces, if it was asked for"},
+             "plane, sphere, cylinder or cone that fits the faces, if patch_fit is set"},
   };
 };
 
-/// Patches on the two sides of a part of a sheet. The footprints of the part's vertices lie on these patches. A side
-/// has several patches if its footprints lie on an edge or corner between patches, for example on a reflex edge.
+/// Patches on the two sides of a part of a sheet. The patches contain the footprints of the part's vertices. A side has
+/// several patches if its footprints lie on an edge or corner between patches, for example on a reflex edge.
 struct AxisPatchPair {
   std::vector<std::uint32_t> first, second;  ///< Patches on the first and on the second side, ascending.
-  double share = 0;                          ///< Share of the sheet's area that lies between these patches, 0 to 1.
+  double share = 0;  ///< Share of the sheet's area that lies between the patches of this pair, 0 to 1.
 };
 
 template <>
@@ -201,7 +204,8 @@ struct Description<AxisPatchPair> {
   static constexpr std::tuple members{
       Member{"first", &AxisPatchPair::first, "", "patches with the footprints of one side"},
       Member{"second", &AxisPatchPair::second, "", "patches with the footprints of the other side"},
-      Member{"share", &AxisPatchPair::share, "", "share of the sheet's area that lies between these patches, 0 to 1"},
+      Member{"share", &AxisPatchPair::share, "",
+             "share of the sheet's area that lies between the patches of this pair, 0 to 1"},
   };
 };
 
@@ -222,11 +226,13 @@ struct AxisSheet {
   Vec3d centroid;             ///< Centroid of the area.
   double rim_length = 0;      ///< Length of its free border, the rim.
   double seam_length = 0;     ///< Length of its border along seams.
-  double crease_length = 0;   ///< Length of its border along edges of two triangles, where another sheet begins.
+  double crease_length = 0;   ///< Length of its border along edges of two triangles that belong to different sheets.
   std::size_t boundary_loops = 0;
-  std::int64_t euler_characteristic = 0;   ///< After cutting along seams: 1 for a disc, 0 for a ring, 2 for a sphere.
-  std::vector<std::uint32_t> seams;        ///< Seams along which it meets other sheets or itself, ascending.
-  std::vector<AxisPatchPair> patch_pairs;  ///< Patches on its two sides, by descending share; empty without a mesh.
+  /// Euler characteristic of the sheet after it is cut along seams: 1 for a disc, 0 for a ring, 2 for a sphere.
+  std::int64_t euler_characteristic = 0;
+  std::vector<std::uint32_t> seams;  ///< Seams along which the sheet meets other sheets or itself, ascending.
+  /// Patches on the two sides of the sheet, by descending share; empty without a mesh.
+  std::vector<AxisPatchPair> patch_pairs;
   /// Patches on the two sides: the columns `patch_a` and `patch_b`. Unset if AxisGraphOptions::of_patches is false.
   std::optional<std::array<std::uint32_t, 2>> sides;
 };
@@ -244,10 +250,10 @@ struct Description<AxisSheet> {
       Member{"for_homotopy", &AxisSheet::for_homotopy, "", "true if all triangles exist for homotopy alone"},
       Member{"thickness", &AxisSheet::thickness, "mesh units", "twice the radius"},
       Member{"separation_angle", &AxisSheet::separation_angle, "degrees",
-             "separation angle of its vertices: near 180 between parallel walls"},
+             "separation angle of the vertices: near 180 between parallel walls"},
       Member{"wall_area", &AxisSheet::wall_area, "square mesh units",
-             "area of the triangles with separation angles of 150 degrees or more at all corners: between walls that "
-             "face each other"},
+             "area of the triangles with separation angles of 150 degrees or more at all corners, which lie between "
+             "walls that face each other"},
       Member{"wall_thickness", &AxisSheet::wall_thickness, "mesh units",
              "twice the radius over the triangles of wall_area; zeros if there are none"},
       Member{"centroid", &AxisSheet::centroid, "mesh units", "centroid of the area"},
@@ -255,7 +261,8 @@ struct Description<AxisSheet> {
       Member{"seam_length", &AxisSheet::seam_length, "mesh units", "length of the border along seams"},
       Member{"crease_length", &AxisSheet::crease_length, "mesh units",
              "length of the border along edges where the sheet meets exactly one other sheet"},
-      Member{"boundary_loops", &AxisSheet::boundary_loops, "", "number of closed lines that form its border"},
+      Member{"boundary_loops", &AxisSheet::boundary_loops, "",
+             "number of closed lines that form the border of the sheet"},
       Member{"euler_characteristic", &AxisSheet::euler_characteristic, "",
              "Euler characteristic of the sheet cut open along seams: 1 for a disc, 0 for a ring, 2 for a sphere"},
       Member{"seams", &AxisSheet::seams, "", "seams along which the sheet meets other sheets or itself"},
@@ -267,7 +274,7 @@ struct Description<AxisSheet> {
 };
 
 /// Medial axis as a graph of sheets, seams, curves and junctions. The number of a seam, curve, junction or patch is its
-/// index in these lists. The number of a sheet is AxisSheet::sheet, as in the axis.
+/// index in the lists of the graph. The number of a sheet is AxisSheet::sheet, as in the axis.
 struct AxisGraph {
   std::vector<AxisSheet> sheets;        ///< Sheets with triangles, by ascending number.
   std::vector<AxisLine> seams;          ///< Lines along edges that belong to three or more triangles.
@@ -286,10 +293,10 @@ struct Description<AxisGraph> {
   static constexpr std::string_view name = "AxisGraph";
   static constexpr std::string_view doc = "Medial axis as sheets, seams, curves and junctions that meet";
   static constexpr std::tuple members{
-      Member{"sheets", &AxisGraph::sheets, "", "sheets by rising number"},
+      Member{"sheets", &AxisGraph::sheets, "", "sheets, by ascending number"},
       Member{"seams", &AxisGraph::seams, "", "lines where three or more triangles meet"},
-      Member{"curves", &AxisGraph::curves, "", "lines of edges without triangles"},
-      Member{"junctions", &AxisGraph::junctions, "", "junctions by rising vertex"},
+      Member{"curves", &AxisGraph::curves, "", "lines of edges that belong to no triangle"},
+      Member{"junctions", &AxisGraph::junctions, "", "junctions, by ascending vertex"},
       Member{"patches", &AxisGraph::patches, "", "smooth parts of the mesh; none if no mesh is given"},
       Member{"area", &AxisGraph::area, "square mesh units", "area of all triangles"},
       Member{"homotopy_area", &AxisGraph::homotopy_area, "square mesh units",
@@ -317,7 +324,7 @@ struct Description<AxisGraph> {
 /// edge prevented their removal.
 ///
 /// In a graph of patches (AxisGraphOptions::of_patches), the column `patch_sheet` decides which triangles form a sheet.
-/// Triangles without a number in this column are left out, so fewer triangles may meet at an edge.
+/// Triangles without a sheet in `patch_sheet` are left out, so fewer triangles may meet at an edge.
 ///
 /// @param axis  axis with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
 /// angles are treated as 0.

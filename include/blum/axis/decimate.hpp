@@ -33,9 +33,10 @@ struct DecimatedAxis {
 /// In thin parts, the tolerance may exceed the radius. So the total displacement of a sheet, seam, rim or curve is also
 /// limited to 0.15 times the largest radius around it.
 ///
-/// In each step, a sheet moves beyond its former shape by at most half of the smallest radius nearby. Moves of up to a
-/// millionth of the tolerance are always allowed. So the sheet stays in the solid, unless the solid between vertices is
-/// thinner than the radii of the vertices indicate. The function certify() checks whether the axis stays in the solid.
+/// In each step, a sheet moves beyond its former shape by at most half of the smallest radius nearby. A displacement of
+/// up to a millionth of the tolerance is always allowed. So the sheet stays in the solid, unless the solid between
+/// vertices is thinner than the radii of the vertices indicate. The function certify() checks whether the axis stays in
+/// the solid.
 /// @param axis       with the columns of MedialView, from MedialAxis::simplify() or prune_sheets(). Axes of all angles
 ///                   (MedialAxis::nested) are not accepted, because their edges overlap.
 /// @param tolerance  >= 0, mesh units. A quarter of the side of a voxel keeps all detail that the voxel grid of the

@@ -20,14 +20,14 @@ struct ExtendOptions {
   /// Largest length by which a rim is extended, in radii of the rim's balls, > 0. In a plate, the border is 1 radius
   /// away from the rim of the axis, and a corner is 1.4 radii away.
   double max_length = 4;
-  /// Rims are extended only where the radius is above this fraction, >= 0, of the largest radius of the sheet. Where
-  /// the radius is smaller, the rim already runs along an edge of the solid.
+  /// Rims are extended only where the radius is above this fraction, >= 0, of the largest radius of the sheet. A rim
+  /// with a smaller radius already runs along an edge of the solid.
   double border_radius = 0.05;
   /// Largest distance of the new border from the surface, between the vertices of the border, as a fraction of the
   /// radius, > 0.
   double tolerance = 0.01;
-  /// True if extensions share vertices and edges with the sheets and extensions that they meet. For this, triangles of
-  /// the axis are divided where an extension meets them. Curves through gaps that an extension closes are left out.
+  /// True if extensions share vertices and edges with the sheets and extensions that they meet. If true, triangles of
+  /// the axis are divided where an extension meets them, and curves through gaps that an extension closes are left out.
   bool join = true;
 };
 
@@ -59,18 +59,18 @@ struct ExtendReport {
   double open_length = 0;
   std::size_t rim_vertices = 0;    ///< Rim vertices of the axis.
   std::size_t reached_border = 0;  ///< Rim vertices that were joined to the surface.
-  /// Rim vertices that were joined to another sheet, because it is closer than the surface.
+  /// Rim vertices that were joined to another sheet, because this sheet is closer than the surface.
   std::size_t reached_sheet = 0;
   std::size_t at_border = 0;    ///< Rim vertices already at the border (`border_radius`) or on another sheet.
   std::size_t not_reached = 0;  ///< Rim vertices without a surface or sheet within ExtendOptions::max_length.
   /// Rim edges without new triangles, because new triangles would fold back or leave the solid.
   std::size_t left_out = 0;
-  double seam_length = 0;  ///< Length of the edges that extensions now share with other sheets, mesh units.
+  double seam_length = 0;  ///< Length of the edges that extensions share with other sheets, mesh units.
   /// Length of the edges of extensions whose ends lie on another sheet, but which share no edge with that sheet, mesh
   /// units.
   double unshared_length = 0;
   std::size_t vertices = 0;   ///< New vertices.
-  std::size_t triangles = 0;  ///< New triangles, including parts of divided ones.
+  std::size_t triangles = 0;  ///< New triangles, including parts of divided triangles.
   double axis_area = 0;       ///< Area of all triangles of the axis, square mesh units.
   double area = 0;            ///< Area of all triangles of the extended surface, square mesh units.
 };
@@ -82,14 +82,15 @@ struct Description<ExtendReport> {
   static constexpr std::tuple members{
       Member{"rim_length", &ExtendReport::rim_length, "mesh units", "length of the rims of the axis"},
       Member{"open_length", &ExtendReport::open_length, "mesh units",
-             "length of the rims that got no triangle and are not at the border"},
+             "length of the rims that have no new triangle and are not at the border"},
       Member{"rim_vertices", &ExtendReport::rim_vertices, "",
-             "rim vertices of the axis: the sum of the next four counts"},
+             "rim vertices of the axis: the sum of reached_border, reached_sheet, at_border and not_reached"},
       Member{"reached_border", &ExtendReport::reached_border, "", "rim vertices that were joined to the surface"},
       Member{"reached_sheet", &ExtendReport::reached_sheet, "", "rim vertices that were joined to another sheet"},
       Member{"at_border", &ExtendReport::at_border, "",
              "rim vertices that were already at the border or on another sheet"},
-      Member{"not_reached", &ExtendReport::not_reached, "", "rim vertices that met nothing within the length"},
+      Member{"not_reached", &ExtendReport::not_reached, "",
+             "rim vertices without a surface or sheet within max_length"},
       Member{"left_out", &ExtendReport::left_out, "",
              "rim edges without new triangles, because the triangles would fold back or leave the solid"},
       Member{"seam_length", &ExtendReport::seam_length, "mesh units",
@@ -97,7 +98,7 @@ struct Description<ExtendReport> {
       Member{"unshared_length", &ExtendReport::unshared_length, "mesh units",
              "length of the edges of extensions that lie on other sheets, but share no edge with these sheets"},
       Member{"vertices", &ExtendReport::vertices, "", "new vertices"},
-      Member{"triangles", &ExtendReport::triangles, "", "new triangles, including parts of divided ones"},
+      Member{"triangles", &ExtendReport::triangles, "", "new triangles, including parts of divided triangles"},
       Member{"axis_area", &ExtendReport::axis_area, "square mesh units", "area of all triangles of the axis"},
       Member{"area", &ExtendReport::area, "square mesh units", "area of all triangles of the extended surface"},
   };
@@ -138,12 +139,12 @@ struct ExtendedAxis {
 /// on the new border. A new triangle is turned by less than 80 degrees relative to the axis's triangle at the rim edge.
 /// The new triangle faces the same way as the axis's triangle. The homotopy type is that of the axis, because the new
 /// triangles can be pushed back into the rims. Extensions of different rims may overlap if they meet at less than 15
-/// degrees; this is not checked.
+/// degrees; overlaps are not checked.
 ///
-/// With ExtendOptions::join, new triangles share vertices and edges with the sheet or extension that they meet. For
-/// this, triangles are divided, border vertices move by at most ExtendOptions::tolerance, and gaps of few edges are
-/// filled. Extensions are joined only where the Betti numbers stay those of the axis. Extensions that are not joined
-/// keep separate vertices. The length of their edges on other sheets is ExtendReport::unshared_length.
+/// With ExtendOptions::join, new triangles share vertices and edges with the sheet or extension that they meet. To
+/// share them, triangles are divided, border vertices move by at most ExtendOptions::tolerance, and gaps of few edges
+/// are filled. Extensions are joined only where the Betti numbers stay those of the axis. Extensions that are not
+/// joined keep separate vertices. The length of their edges on other sheets is ExtendReport::unshared_length.
 ///
 /// @param axis   axis with radii and sheets, for example from MedialAxis::simplify(), fitted(), decimate() or a file.
 /// @param solid  solid of a mesh; the axis must be an axis of this solid.
@@ -157,7 +158,7 @@ struct ExtendedAxis {
                                        const Context& context = {});
 
 /// Extends an axis to the surface of Solid::of(mesh).
-/// @throws as extend_axis() above and Solid::of().
+/// @throws as extend_axis() with a Solid, and as Solid::of().
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const MeshView& mesh, const ExtendOptions& options = {},
                                        const Context& context = {});
 

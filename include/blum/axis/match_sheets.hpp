@@ -36,22 +36,23 @@ struct Description<SheetMatchOptions> {
   static constexpr std::string_view doc = "Options of the comparison of the sheets of two axes";
   static constexpr std::tuple members{
       Member{"tolerance", &SheetMatchOptions::tolerance, "mesh units",
-             "largest distance at which points of a sheet lie on the other axis; if unset, a hundredth of the diagonal "
-             "of the box around both",
+             "largest distance at which a point of a sheet lies on the other axis; default: 1/100 of the diagonal of "
+             "the box around both axes",
              Range::at_least(0)},
       Member{"large_share", &SheetMatchOptions::large_share, "",
              "smallest share of the axis's area that a large sheet has", Range::between(0, 1)},
       Member{"of_patches", &SheetMatchOptions::of_patches, "",
              "true to compare sheets of pairs of patches (column patch_sheet)"},
       Member{"points", &SheetMatchOptions::points, "",
-             "points that are spread over each axis, with at least 16 on each sheet", Range::between(1, 1e7)},
+             "number of points that are spread over each axis, with at least 16 points on each sheet",
+             Range::between(1, 1e7)},
   };
 };
 
 /// Part of a sheet of one axis that lies on a single sheet of the other axis.
 struct SheetOverlap {
   std::uint32_t sheet = 0;  ///< Number of the sheet of the other axis.
-  double area = 0;          ///< Area of the part.
+  double area = 0;          ///< Area of the part, square mesh units.
   double share = 0;         ///< Area of the part, divided by the area of the whole sheet, 0 to 1.
 };
 
@@ -98,11 +99,11 @@ struct Description<MatchedSheet> {
              "share of the area between the patches in 'sides', 0 to 1; no other pair of patches has a larger share"},
       Member{"partner", &MatchedSheet::partner, "",
              "matching sheet of the other axis: more than half of each of the two sheets lies on the other sheet"},
-      Member{"on_partner", &MatchedSheet::on_partner, "square mesh units", "area of the part on the partner"},
+      Member{"on_partner", &MatchedSheet::on_partner, "square mesh units", "area of the part that lies on the partner"},
       Member{"on_other", &MatchedSheet::on_other, "square mesh units",
-             "area of the part on any sheet of the other axis"},
+             "area of the part that lies on any sheet of the other axis"},
       Member{"largest_distance", &MatchedSheet::largest_distance, "mesh units",
-             "largest distance of its points from the other axis; none if that axis has no sheets"},
+             "largest distance of a point of the sheet from the other axis; none if the other axis has no sheets"},
       Member{"overlaps", &MatchedSheet::overlaps, "", "parts on sheets of the other axis, by descending area"},
   };
 };
@@ -123,13 +124,14 @@ struct Description<MatchedAxis> {
   static constexpr std::string_view name = "MatchedAxis";
   static constexpr std::string_view doc = "Sheets of one of two axes, and sums over them";
   static constexpr std::tuple members{
-      Member{"sheets", &MatchedAxis::sheets, "", "sheets by rising number"},
+      Member{"sheets", &MatchedAxis::sheets, "", "sheets, by ascending number"},
       Member{"matched", &MatchedAxis::matched, "", "number of sheets with a partner"},
       Member{"large", &MatchedAxis::large, "", "number of large sheets"},
       Member{"large_matched", &MatchedAxis::large_matched, "", "number of large sheets with a partner"},
       Member{"area", &MatchedAxis::area, "square mesh units", "area of all sheets"},
-      Member{"matched_area", &MatchedAxis::matched_area, "square mesh units", "area of the parts on partners"},
-      Member{"matched_share", &MatchedAxis::matched_share, "", "share of the area on partners; 0 without area"},
+      Member{"matched_area", &MatchedAxis::matched_area, "square mesh units",
+             "area of the parts of sheets that lie on partners"},
+      Member{"matched_share", &MatchedAxis::matched_share, "", "matched_area divided by area; 0 if there is no area"},
   };
 };
 
@@ -157,7 +159,7 @@ struct Description<SheetMatches> {
              "pairs of partners whose patches are compared, because both sheets lie mostly between two patches"},
       Member{"same_sides", &SheetMatches::same_sides, "", "compared pairs with the same patches"},
       Member{"same_large_sheets", &SheetMatches::same_large_sheets, "",
-             "true if each large sheet has a partner, with the same patches on its sides where they were compared"},
+             "true if each large sheet has a partner, and all compared patches of large sheets agree"},
   };
 };
 
@@ -172,7 +174,7 @@ struct Description<SheetMatches> {
 /// without area get no points, and a sheet without area has no partner. Curves are not compared.
 /// The governors of two axes are comparable only if both axes were made from the same mesh with the same options of
 /// patches.
-/// @param first, second  axes with the column `sheet`. Any other complex with this column may be given, too.
+/// @param first, second  axes with the column `sheet`. Any other complex with the column `sheet` may be given, too.
 /// @return      the same result for any number of threads. If an axis has no sheets, no sheet has a partner.
 /// @throws InvalidOption if an option is out of range, or if triangles lack the column `sheet` (with `of_patches`:
 /// `patch_sheet`). InvalidMesh with the text of problem_of(); Cancelled. Cost: O(n log n) for n triangles, and about 2

@@ -26,14 +26,14 @@ struct PatchedMesh {
   FunctionRef<SiteId(SiteId own)> input_site;  ///< Returns the site of the input mesh for a site of `mesh`.
 };
 
-/// Numbers of the patches of a mesh, and anchors: vertices from which distances are measured. Numbers and anchors
-/// depend on the shape of the mesh and on the order of its faces and vertices, but not on its position.
+/// Numbers of the patches of a mesh, and the anchors of the mesh: vertices from which distances are measured. Numbers
+/// and anchors depend on the shape of the mesh and on the order of its faces and vertices, but not on its position.
 ///
 /// A patch is a flat or a smooth part of the surface. The faces of a flat part are connected through edges that bend by
 /// at most 1 degree. In a smooth part, edges bend by at most 30 degrees. The patch of a face is its flat part if this
 /// part covers at least 0.437 % of the surface of the body. If the flat part is smaller, the patch of the face is its
-/// smooth part. With fillets, the whole surface may be one smooth part; its flat parts still distinguish the sheets.
-/// The patch with the smaller first face has the smaller number.
+/// smooth part. If the mesh has fillets, its whole surface may be one smooth part. Then flat parts still distinguish
+/// the sheets. The patch with the smaller first face has the smaller number.
 class PatchNumbers {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -57,9 +57,9 @@ class PatchNumbers {
   /// Returns true if a site of the input lies on several patches, that is, on an edge or vertex between them.
   [[nodiscard]] bool is_shared(SiteId site) const { return site.has_value() && is_shared_[site.value]; }
   /// Returns the anchors: up to four vertices. The anchors do not all lie on a line or in a plane, unless the whole
-  /// mesh does. The distances from them determine a position.
+  /// mesh does. The distances of a position from the anchors determine the position.
   [[nodiscard]] const std::vector<Vec3d>& anchors() const { return anchors_; }
-  /// Returns the distance from the first anchor to the vertex furthest from it.
+  /// Returns the distance from the first anchor to the vertex that is furthest from this anchor.
   [[nodiscard]] double reach() const { return reach_; }
 
  private:

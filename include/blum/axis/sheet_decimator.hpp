@@ -23,7 +23,8 @@ struct AxisPoint {
 
 /// Triangles (centre, ring[k], ring[k + 1]) of one sheet around a vertex, the centre.
 struct Fan {
-  std::vector<std::uint32_t> ring;       ///< Vertices around the centre. In a closed fan, the first follows the last.
+  /// Vertices around the centre. In a closed fan, the last vertex is followed by the first.
+  std::vector<std::uint32_t> ring;
   std::vector<std::uint32_t> triangles;  ///< Triangle k lies between ring[k] and ring[k + 1].
   bool is_closed = false;
 };

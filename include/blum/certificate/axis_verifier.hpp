@@ -19,8 +19,8 @@ namespace blum {
 ///
 /// Many threads may use one verifier at the same time. If several threads need the same data, one thread computes them
 /// and the others wait.
-/// Memory: about 400 bytes per triangle of the mesh, or per block of 4 x 4 x 4 voxels at the boundary. In addition, up
-/// to 30 MB.
+/// Memory: about 400 bytes per triangle of the mesh, or per block of 4 x 4 x 4 voxels at the boundary. The verifier
+/// also needs up to 30 MB for other data.
 class AxisVerifier {
  public:
   /// Constructs a verifier for the solid of a mesh.
@@ -40,7 +40,7 @@ class AxisVerifier {
   AxisVerifier& operator=(AxisVerifier&&) noexcept;
   ~AxisVerifier();
 
-  /// Returns the rule of the solid. For a mesh it equals solid_rule(mesh); certify() throws if the rule is not
+  /// Returns the rule of the solid. For a mesh, the result equals solid_rule(mesh); certify() throws if the rule is not
   /// SolidRule::polyhedron. For voxels, the arguments of the constructor decide the rule, and the reason is empty.
   /// @throws Cancelled.
   [[nodiscard]] MeshSolidRule rule(const Context& context = {}) const;

@@ -67,10 +67,10 @@ struct Description<BodyCheck> {
 };
 
 /// Errors of the vertices of an axis. Distances are measured to the surface of the body that contains the vertex. If no
-/// body contains the vertex, they are measured to the surface of the closest body. The surface of a body consists of
-/// its outer shell and the shells of its voids. The tolerance is the larger of two lengths: 1e-6 of the diagonal of the
-/// body's box, and twice the rounding error of the body's coordinates. For the voxels of a mesh (SolidRule::winding), a
-/// vertex is outside only if its distance from the voxels is more than a voxel's diagonal.
+/// body contains the vertex, distances are measured to the surface of the closest body. The surface of a body consists
+/// of its outer shell and the shells of its voids. The tolerance is the larger of two lengths: 1e-6 of the diagonal of
+/// the body's box, and twice the rounding error of the body's coordinates. For the voxels of a mesh
+/// (SolidRule::winding), a vertex is outside only if its distance from the voxels is more than a voxel's diagonal.
 struct GeometryCheck {
   std::size_t vertices = 0;    ///< Number of checked vertices.
   std::size_t not_finite = 0;  ///< Vertices with a coordinate, radius, footprint or angle that is not finite.
@@ -119,11 +119,12 @@ struct Description<GeometryCheck> {
 /// check covers each edge with such balls, so every point of the edge is checked.
 ///
 /// An edge may cut a corner of its body if the edge can be pushed into the solid. An edge that is pushed may leave the
-/// body by at most 1/64 of the diagonal of the body's box. For images, the limit is half the diagonal of a voxel if
-/// that is larger. To push an edge, the check moves the edge's outermost point into the solid, through the closest
-/// point of the surface. The two halves of the edge are then treated in the same way, until the whole edge lies in the
-/// solid. At most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is. If the solid
-/// consists of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is pushed.
+/// body by at most 1/64 of the diagonal of the body's box. For images, an edge may leave the body by half the diagonal
+/// of a voxel if that is larger. To push an edge, the check moves the edge's outermost point into the solid, through
+/// the closest point of the surface. The two halves of the edge are then treated in the same way, until the whole edge
+/// lies in the solid. At most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is.
+/// If the solid consists of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is
+/// pushed.
 struct EdgeCheck {
   std::size_t edges = 0;    ///< Checked edges, each counted once.
   std::size_t pushed = 0;   ///< Edges that cut a corner of their body, but can be pushed into it.
@@ -131,12 +132,13 @@ struct EdgeCheck {
   std::size_t outside = 0;  ///< Edges that leave their body and cannot be pushed into it.
   /// Lower bound of the largest distance of the edges in `outside` from the body, mesh units.
   double outside_by = 0;
-  Vec3d where;                ///< Point at the distance `outside_by`, mesh units.
-  std::size_t across = 0;     ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
-  Vec3d across_at;            ///< Position of the first crossing of a gap, mesh units.
-  std::size_t undecided = 0;  ///< Edges that possibly cross a gap. If any exist, only Betti numbers are proven.
-  double tolerance = 0;       ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
-  bool holds = false;         ///< True if no edge is outside or crosses a gap.
+  Vec3d where;             ///< Point at the distance `outside_by`, mesh units.
+  std::size_t across = 0;  ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
+  Vec3d across_at;         ///< Position of the first crossing of a gap, mesh units.
+  /// Edges that possibly cross a gap. If there are such edges, only Betti numbers are proven.
+  std::size_t undecided = 0;
+  double tolerance = 0;  ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
+  bool holds = false;    ///< True if no edge is outside or crosses a gap.
 };
 
 template <>
@@ -144,7 +146,7 @@ struct Description<EdgeCheck> {
   static constexpr std::string_view name = "EdgeCheck";
   static constexpr std::string_view doc = "Check that edges lie in the solid between their ends";
   static constexpr std::tuple members{
-      Member{"edges", &EdgeCheck::edges, "", "number of checked edges; each edge counts once"},
+      Member{"edges", &EdgeCheck::edges, "", "number of checked edges"},
       Member{"pushed", &EdgeCheck::pushed, "", "edges that cut a corner, and can be pushed into the solid"},
       Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "largest distance of a pushed edge from the solid"},
       Member{"outside", &EdgeCheck::outside, "", "edges that leave the solid and cannot be pushed into it"},
@@ -198,7 +200,7 @@ struct Description<HomologyCheck> {
              "edges that touch the surface, so that their linking numbers are undecided"},
       Member{"proven", &HomologyCheck::proven, "", "strongest result that is proven in every body"},
       Member{"holds", &HomologyCheck::holds, "",
-             "true if the check ran and nothing contradicts equal homology, even if little is proven"},
+             "true if the check ran and nothing contradicts equal homology, even if only a weak result is proven"},
       Member{"shown", &HomologyCheck::shown, "",
              "the proven result, and the reason why nothing stronger is proven, in one sentence"},
   };
@@ -213,9 +215,9 @@ struct BallUnionCheck {
   /// the samples. If the axis has no balls, the value is the diagonal of the solid.
   double solid_to_balls = 0;
   double mean_solid_to_balls = 0;  ///< Mean of the distance in `solid_to_balls` over the surface's area.
-  /// Largest distance by which a ball around a vertex reaches out of the solid. For one ball, this is the radius minus
-  /// the vertex's exact distance from the surface. The distance is negative if the vertex is outside the solid. The
-  /// result is 0 if all radii are exact.
+  /// Largest distance by which a ball around a vertex reaches out of the solid. For one ball, this distance is the
+  /// radius minus the vertex's exact distance from the surface. The distance from the surface is negative if the vertex
+  /// is outside the solid. If all radii are exact, `balls_beyond_solid` is 0.
   double balls_beyond_solid = 0;
   /// Largest distance of the surface of the union of the balls from the surface of the solid. The distance is measured
   /// at 32 points of each ball. If there are 3,125 balls or more, only every n-th ball is measured. The number n is
@@ -223,9 +225,9 @@ struct BallUnionCheck {
   double balls_to_surface = 0;
   /// Largest distance of a point of the surface from the closest sample, mesh units. For a mesh, the step is the
   /// smaller of two lengths: the median length of the axis's edges, and 1/256 of the solid's diagonal. The step is
-  /// larger if this step would need more than 50,000 samples and more samples than the mesh has triangles. For voxels,
-  /// each face between the solid and the background has one or four samples. If there are more than 250,000 faces, each
-  /// block of 4 x 4 x 4 voxels has one sample for each direction of faces.
+  /// larger if this length would need more than 50,000 samples and more samples than the mesh has triangles. For
+  /// voxels, each face between the solid and the background has one or four samples. If there are more than 250,000
+  /// faces, each block of 4 x 4 x 4 voxels has one sample for each direction of faces.
   double step = 0;
 };
 
@@ -257,11 +259,11 @@ struct Description<BallUnionCheck> {
 /// points of curves, 4,096 vertices and 16,384 points of the solid. All small sheets together have up to 4,096 further
 /// points. All bodies together have up to 32,768 further points.
 ///
-/// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If this side is
-/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no voxel side, the unit is
-/// 1/32 of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
-/// diagonal of a voxel. The rules also use the deviation that the axis reports (DecimatedAxis::deviation). A deviation
-/// above 1/64 of the diagonal of the solid is lowered to this value.
+/// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If the side is
+/// above an eighth of the solid's longest side, the unit is an eighth of the solid's longest side. If the axis reports
+/// no voxel side, the unit is 1/32 of the diagonal of the solid. If the solid consists of voxels, the unit is at least
+/// half and at most the whole diagonal of a voxel. The rules also use the deviation that the axis reports
+/// (DecimatedAxis::deviation). A deviation above 1/64 of the diagonal of the solid is lowered to this value.
 ///
 /// The first rule judges how far the axis is from the middle between two walls, which are parts of the solid's surface.
 /// At a point of the axis, the ball that touches the closest wall is grown until it touches another wall. The distance
@@ -275,14 +277,14 @@ struct Description<BallUnionCheck> {
 /// or the deviation plus a twelfth of a voxel if that is more.
 ///
 /// Two rules raise the limits that depend on the radius. If a corner of the point's cell has a larger radius than the
-/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So these limits are at least a tenth
-/// of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the limits
-/// that depend on the radius do not apply.
+/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So the radius limits are at least a
+/// tenth of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the
+/// limits that depend on the radius do not apply.
 ///
 /// Unless the solid consists of voxels, sheets are also judged one by one. At most half of the points of a sheet may be
 /// further from the middle than the allowance. All sheets with at least 12 sample points are judged. Sheets with fewer
-/// sample points are judged only if their area is at least 4 square voxels. The 341 largest of these sheets get 12
-/// further points each; smaller ones are not judged.
+/// sample points are judged only if their area is at least 4 square voxels. The 341 largest sheets with few sample
+/// points get 12 further points each; smaller sheets are not judged.
 ///
 /// The second rule judges vertices with one footprint. Vertices of judged cells should have two footprints, but some
 /// have only one, at ends of sheets and in thin walls. A vertex with one footprint must lie within the allowance from
@@ -290,11 +292,12 @@ struct Description<BallUnionCheck> {
 /// has a corner with a radius below one voxel. At most a tenth of the vertices of judged cells, or 16 vertices if that
 /// is more, may exceed this limit.
 ///
-/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of this cell, and
-/// the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that is
-/// allowed between the axis and the centre of a ball with the vertex's radius (see below). The distance of the vertex
-/// from the middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above 256
-/// square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
+/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angles of this cell and
+/// of its other corners are above theta and above 20 degrees (images: 40). Let d be the distance that is allowed
+/// between the axis and the centre of a ball with the vertex's radius (see below). The distance of the vertex from the
+/// middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above 256 square
+/// voxels. For such an axis, at most 60 % of the vertices with a radius above the allowance may have only one
+/// footprint.
 ///
 /// The third rule finds missing parts of the axis. Balls are grown from random points of the solid. In each body,
 /// further balls are grown from points next to the body's surface. If the solid consists of voxels, the further balls
@@ -304,8 +307,8 @@ struct Description<BallUnionCheck> {
 /// The separation angle of a ball is the angle between the two points, seen from the ball's centre. This angle must be
 /// at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is less. In this rule, a theta below 10
 /// degrees (images: 20) is raised to this value. If the distance between the two points is below 4 voxels plus lambda,
-/// the angle must also be at least 80 degrees. If the solid consists of voxels, balls whose two points are that close
-/// never count.
+/// the angle must also be at least 80 degrees. If the solid consists of voxels, balls whose two points are closer than
+/// 4 voxels plus lambda never count.
 ///
 /// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
 /// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
@@ -317,17 +320,18 @@ struct Description<BallUnionCheck> {
 /// further balls of all bodies, it must hold for 90 % of them in each body. Three balls may always exceed the limit, in
 /// the whole solid and in each body.
 ///
-/// If borders were fitted, the check also judges parts of the solid that are thinner than a voxel. The limits then
-/// depend on the radius in these parts. A ball counts if its radius is at most two thirds of a voxel, and its angle at
-/// least 150 degrees and `sought_angle`. No ball beside it may be larger by more than 5 %. For all of these balls
-/// except one, the axis must come within three radii of the ball's centre. So the check finds a missing end of a wire
-/// if this end is longer than three radii. Balls for this rule are also grown from vertices of the surface.
+/// If borders were fitted, the check also judges parts of the solid that are thinner than a voxel. The limits for these
+/// parts depend on their radius. A ball counts if its radius is at most two thirds of a voxel, and its angle at least
+/// 150 degrees and `sought_angle`. No ball next to a ball that counts may be larger by more than 5 %. For all balls in
+/// thin parts except one, the axis must come within three radii of the ball's centre. So the check finds a missing end
+/// of a wire if this end is longer than three radii. Balls for this rule are also grown from vertices of the surface.
 ///
 /// In polyhedra, the check also finds single sheets that are missing. For this rule, walls are flat or smooth parts of
 /// the surface. A pair of walls is judged if more than 8 balls touch both walls. More than 6 of the balls must have
 /// centres that are 2 voxels apart from each other. The separation angle of these balls is at least theta plus 10
-/// degrees, or halfway from theta to 180 degrees if that is less. Their radius is above `missing_allowance`. Half of
-/// the balls must be next to a cell of the axis that lies between the two walls (docs/theory/certificate.md).
+/// degrees, or halfway from theta to 180 degrees if that is less. The radius of these balls is above
+/// `missing_allowance`. Half of the balls must be next to a cell of the axis that lies between the two walls
+/// (docs/theory/certificate.md).
 ///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
 /// but not judged.
@@ -350,7 +354,7 @@ struct MedialCheck {
   double close_share = 1;   ///< Share of samples within `close_allowance` and an eighth of the ball's radius.
   double close_allowance = 0;     ///< A third of a voxel, or deviation plus a twelfth of a voxel if more, mesh units.
   double off_by = 0;              ///< Largest distance of a sample from the middle of two walls, mesh units.
-  Vec3d off_at;                   ///< Position of the sample at that distance, mesh units.
+  Vec3d off_at;                   ///< Position of the sample with the distance `off_by`, mesh units.
   std::size_t sheets_judged = 0;  ///< Sheets that were judged one by one; 0 if the solid consists of voxels.
   std::size_t sheets_off = 0;     ///< Judged sheets with more than half of their points outside the allowance.
   Vec3d sheet_off_at;       ///< Position of a point outside the allowance in the first of `sheets_off`, mesh units.
@@ -363,13 +367,13 @@ struct MedialCheck {
   std::size_t bodies_unseen = 0;    ///< Bodies that are not judged, because fewer than 20 balls count.
   std::size_t bodies_missed = 0;    ///< Judged bodies in which too many balls have no point of the axis nearby.
   double missed_share_of_body = 0;  ///< As `missed_share`, for the balls of the body with the largest share.
-  /// Largest distance of the centre of a ball of that body from the axis, mesh units.
+  /// Largest distance of a ball's centre from the axis in the body of `missed_share_of_body`, mesh units.
   double missed_in_body_by = 0;
-  Vec3d missed_in_body_at;       ///< Centre of the ball at that distance, mesh units.
-  std::size_t thin_balls = 0;    ///< Balls in the middle of parts thinner than a voxel; 0 if they were not judged.
-  std::size_t thin_missed = 0;   ///< Balls among `thin_balls` that are more than three of their radii from the axis.
-  double thin_missed_by = 0;     ///< Largest distance of the centre of one of `thin_balls` from the axis, mesh units.
-  Vec3d thin_missed_at;          ///< Centre of the ball at that distance, mesh units.
+  Vec3d missed_in_body_at;      ///< Centre of the ball at that distance, mesh units.
+  std::size_t thin_balls = 0;   ///< Balls in the middle of parts thinner than a voxel; 0 if thin parts were not judged.
+  std::size_t thin_missed = 0;  ///< Balls among `thin_balls` that are more than three of their radii from the axis.
+  double thin_missed_by = 0;    ///< Largest distance of the centre of one of `thin_balls` from the axis, mesh units.
+  Vec3d thin_missed_at;         ///< Centre of the ball at that distance, mesh units.
   std::size_t pairs_missed = 0;  ///< Pairs of walls between which a sheet is missing.
   Vec3d pair_missed_at;          ///< Centre of a missed ball of the first of `pairs_missed`, mesh units.
   bool judges_missing = false;   ///< True if at least 20 balls count, in the whole solid or in one body.
@@ -401,12 +405,13 @@ struct Description<MedialCheck> {
              "share of the area of triangles that exist for homotopy alone, and are not judged"},
       Member{"samples", &MedialCheck::samples, "", "examined points of judged sheets and curves"},
       Member{"medial_share", &MedialCheck::medial_share, "",
-             "share of the samples at most the allowance from the middle, by area"},
+             "share of the samples whose distance from the middle is at most the allowance, by area"},
       Member{"near_share", &MedialCheck::near_share, "",
-             "share of the samples that are also at most a quarter of the distance to the walls from the middle"},
-      Member{
-          "close_share", &MedialCheck::close_share, "",
-          "share of the samples at most close_allowance, and an eighth of the distance to the walls, from the middle"},
+             "share of the samples whose distance from the middle is also at most a quarter of their distance to the "
+             "walls"},
+      Member{"close_share", &MedialCheck::close_share, "",
+             "share of the samples whose distance from the middle is at most close_allowance, and at most an eighth of "
+             "their distance to the walls"},
       Member{"close_allowance", &MedialCheck::close_allowance, "mesh units",
              "a third of a voxel, or the deviation plus a twelfth of a voxel if that is more"},
       Member{"off_by", &MedialCheck::off_by, "mesh units", "largest distance of a sample from the middle"},
@@ -432,11 +437,11 @@ struct Description<MedialCheck> {
       Member{"bodies_missed", &MedialCheck::bodies_missed, "",
              "judged bodies in which too many balls have no point of the axis near their centre"},
       Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "",
-             "missed_share of the balls of one body, for the body where it is largest"},
+             "missed_share of the balls of one body: the body with the largest share"},
       Member{"missed_in_body_by", &MedialCheck::missed_in_body_by, "mesh units",
-             "largest distance of the centre of one of that body's balls from the axis"},
+             "largest distance of a ball's centre from the axis, in the body of missed_share_of_body"},
       Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units",
-             "centre of the ball at the distance missed_in_body_by"},
+             "centre of the ball with the distance missed_in_body_by"},
       Member{"thin_balls", &MedialCheck::thin_balls, "", "balls in the middle of parts thinner than a voxel"},
       Member{"thin_missed", &MedialCheck::thin_missed, "",
              "balls among thin_balls that are more than three of their radii from the axis"},
@@ -455,12 +460,12 @@ struct Description<MedialCheck> {
 /// Result of the check that the triangles of an axis lie in the solid between their edges. If a point of the body is at
 /// distance r from the surface, the ball of radius r around it lies in the body. If the balls around the corners of a
 /// triangle do not cover it, the triangle is halved repeatedly. Halving ends when balls cover all parts of the
-/// triangle, or a point of it is found outside.
+/// triangle, or a point of the triangle is found outside.
 ///
 /// Triangles are flat, but the surface of the solid may be curved. So a triangle may leave the body by at most the
 /// allowance. The allowance is the sum of the tolerance, the limit for edges that cut a corner (EdgeCheck), and the
-/// deviation that the axis reports. Triangles that leave the body by more than the tolerance are counted in `leaving`,
-/// even if they leave it by less than the allowance.
+/// deviation that the axis reports. All triangles that leave the body by more than the tolerance are counted in
+/// `leaving`, also if the allowance permits it.
 struct TriangleCheck {
   std::size_t triangles = 0;  ///< Checked triangles.
   std::size_t leaving = 0;    ///< Triangles that leave the body of their corners by more than the tolerance.
@@ -500,12 +505,12 @@ struct Description<TriangleCheck> {
 /// (MedialRole).
 ///
 /// Sheets must be numbered from 0, without gaps. Each sheet must be connected through edges of exactly two triangles.
-/// Two sheets may share an edge of exactly two triangles only if one end of the edge lies on a seam. At these edges,
-/// the axis may label the two triangles as one sheet or as two. No violation is accepted.
+/// Two sheets may share an edge of exactly two triangles only if one end of the edge lies on a seam. At an edge with an
+/// end on a seam, the axis may label the two triangles as one sheet or as two. No violation is accepted.
 struct LabelCheck {
   std::size_t doubled = 0;       ///< Edges and triangles with the same vertices as another edge or triangle.
   std::size_t inner_listed = 0;  ///< Listed edges that belong to two triangles.
-  std::size_t unlisted = 0;      ///< Edges of one triangle, or of three or more, that are not listed.
+  std::size_t unlisted = 0;      ///< Edges of one triangle, or of three or more triangles, that are not listed.
   std::size_t edge_roles = 0;    ///< Edges with a wrong role.
   std::size_t vertex_roles = 0;  ///< Vertices with a wrong role.
   std::size_t sheets = 0;        ///< Number of sheets, by the labels of triangles.
@@ -536,21 +541,21 @@ struct Description<LabelCheck> {
 
 /// Result of the check that the separation angles of triangles and edges fit their positions. The angle of a triangle
 /// is the largest separation angle within half a voxel of the triangle. After decimation, it may also be the angle of a
-/// removed triangle next to the remaining one. So single triangles are not judged. Limits on shares apply only if at
-/// least 64 triangles or edges were examined. If the solid consists of voxels, of an image or a mesh, `below_share`,
-/// `above_share` and `curves_above_share` are reported, but not judged.
+/// removed triangle next to the remaining triangle. So the check does not judge single triangles. Limits on shares
+/// apply only if at least 64 triangles or edges were examined. If the solid consists of voxels, of an image or a mesh,
+/// `below_share`, `above_share` and `curves_above_share` are reported, but not judged.
 struct AngleCheck {
   std::size_t triangles = 0;  ///< Triangles whose corners all have an angle of 10 degrees or more.
   /// Share of the area of `triangles` that belongs to triangles with an angle more than 10 degrees below the angles of
-  /// all their corners. At most 0.8 is accepted.
+  /// all their corners. The largest accepted share is 0.8.
   double below_share = 0;
   std::size_t samples = 0;  ///< Sampled triangles.
   /// Share of the sampled triangles whose angle is more than 20 degrees above all angles found within one voxel of
-  /// them. At most 0.2 is accepted.
+  /// them. The largest accepted share is 0.2.
   double above_share = 0;
   std::size_t curve_samples = 0;  ///< Sampled edges of curves.
   /// Share of the sampled edges of curves whose angle is more than 20 degrees above all angles found within one voxel
-  /// of them. At most 0.6 is accepted.
+  /// of them. The largest accepted share is 0.6.
   double curves_above_share = 0;
   std::size_t borders = 0;  ///< Edges of rims and seams.
   /// Edges of rims and seams with an angle above the angles of all their triangles. The largest accepted number is 0.
@@ -559,8 +564,8 @@ struct AngleCheck {
   /// half of `borders` are accepted.
   std::size_t borders_below = 0;
   std::size_t rims = 0;  ///< Examined edges of rims; 0 if theta is unknown.
-  /// Length of the rims of sheets without an angle above theta, as a share of the length of all rims and curves. At
-  /// most 0.25 is accepted.
+  /// Length of the rims of sheets without an angle above theta, as a share of the length of all rims and curves. The
+  /// largest accepted share is 0.25.
   double low_rims_share = 0;
   bool holds = false;  ///< True if no judged limit is exceeded.
 };
@@ -598,10 +603,10 @@ struct Description<AngleCheck> {
 /// large if its area is at least 4 square voxels and it has at least 8 triangles. Triangles belong to the same part if
 /// the edge between them bends by less than 45 degrees, or does not touch a seam. All large parts of a sheet must lie
 /// between the same pair of walls. At most 5 % of `vertices`, or 3 vertices if that is more, may be `wrong`. Files of
-/// Voronoi diagrams may have columns of patches. If they do, each pair of sites, and each sheet of patches, must have
-/// one pair of patches.
+/// Voronoi diagrams may have columns of patches. In files with these columns, each pair of sites, and each sheet of
+/// patches, must have one pair of patches.
 struct SheetCheck {
-  std::size_t sheets = 0;     ///< Sheets with two large parts that only edges next to seams join.
+  std::size_t sheets = 0;     ///< Sheets with two large parts that are connected only through edges next to seams.
   std::size_t two_pairs = 0;  ///< Sheets among `sheets` between two pairs of walls; the largest accepted number is 0.
   Vec3d two_pairs_at;         ///< Point in the first of `two_pairs`, mesh units.
   std::size_t vertices = 0;   ///< Vertices inside the part of a sheet for which the file states one pair of sites.
@@ -615,22 +620,24 @@ struct Description<SheetCheck> {
   static constexpr std::string_view name = "SheetCheck";
   static constexpr std::string_view doc = "Check that sheets lie between single pairs of walls";
   static constexpr std::tuple members{
-      Member{"sheets", &SheetCheck::sheets, "", "sheets with two large parts that only edges next to seams join"},
-      Member{"two_pairs", &SheetCheck::two_pairs, "", "sheets among these that lie between two pairs of walls"},
+      Member{"sheets", &SheetCheck::sheets, "",
+             "sheets with two large parts that are connected only through edges next to seams"},
+      Member{"two_pairs", &SheetCheck::two_pairs, "", "sheets counted in 'sheets' that lie between two pairs of walls"},
       Member{"two_pairs_at", &SheetCheck::two_pairs_at, "mesh units", "point in the first sheet of two pairs of walls"},
       Member{"vertices", &SheetCheck::vertices, "",
              "vertices inside a part of a sheet for which the file states one pair of sites"},
-      Member{"wrong", &SheetCheck::wrong, "", "vertices among these with a footprint on neither of the two sites"},
-      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first vertex of wrong"},
+      Member{"wrong", &SheetCheck::wrong, "",
+             "vertices counted in 'vertices' with a footprint on neither of the two sites"},
+      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first vertex counted in 'wrong'"},
       Member{"holds", &SheetCheck::holds, "", "true if no limit is exceeded"},
   };
 };
 
 /// Parts that a certificate checks besides the numbers of components, tunnels and voids. Switch a part off if the file
-/// of the axis lacks its data. The parts that need this part are then not checked either.
+/// of the axis lacks its data. If a part is off, the parts that need it are not checked either.
 struct CertificateOptions {
-  /// Positions of vertices and edges. If this is off, only the Betti numbers of the whole solid and the whole axis are
-  /// compared.
+  /// Positions of vertices and edges. If positions are off, only the Betti numbers of the whole solid and the whole
+  /// axis are compared.
   bool positions = true;
   bool radii = true;       ///< Needs positions.
   bool footprints = true;  ///< Needs radii.
@@ -670,7 +677,7 @@ struct Description<CertificateOptions> {
       Member{"spacing", &CertificateOptions::spacing, "mesh units", "side of a voxel that the axis reports",
              Range::positive()},
       Member{"deviation", &CertificateOptions::deviation, "mesh units",
-             "largest change by removed vertices that the axis reports", Range::at_least(0)},
+             "deviation that the axis reports: largest change by the removal of vertices", Range::at_least(0)},
       Member{"fitted", &CertificateOptions::fitted, "", "true if the axis reports that its borders were fitted"},
   };
 };
@@ -681,7 +688,8 @@ struct Certificate {
   BettiNumbers solid{};         ///< Sum over all bodies, computed from the solid's boundary or voxels.
   BettiNumbers axis{};          ///< Betti numbers of the complex, by homology().
   std::optional<double> voxel;  ///< Shortest side of a voxel, mesh units; unset unless the solid consists of voxels.
-  /// One check for each body; all must agree. Without CertificateOptions::positions, one check for the whole solid.
+  /// One check for each body; the topology must agree in every body. Without CertificateOptions::positions, one check
+  /// for the whole solid.
   std::vector<BodyCheck> bodies;
   bool topology_holds = false;
   GeometryCheck geometry;
@@ -709,9 +717,8 @@ struct Description<Certificate> {
       Member{"solid_betti", &Certificate::solid, "", "components, tunnels, voids of the solid: the sum of its bodies"},
       Member{"axis_betti", &Certificate::axis, "", "components, tunnels, voids of the axis"},
       Member{"voxel", &Certificate::voxel, "mesh units", "shortest side of a voxel if the solid is made of voxels"},
-      Member{
-          "bodies", &Certificate::bodies, "",
-          "one check for each body, and all must agree; one check for the whole solid if positions were not checked"},
+      Member{"bodies", &Certificate::bodies, "",
+             "one check for each body; one check for the whole solid if positions were not checked"},
       Member{"topology_holds", &Certificate::topology_holds, "",
              "true if components, tunnels and voids agree in all bodies"},
       Member{"geometry", &Certificate::geometry, "", "check of the vertices"},
@@ -741,7 +748,8 @@ struct Description<MeshSolidRule> {
   static constexpr std::string_view name = "MeshSolidRule";
   static constexpr std::string_view doc = "Rule that defines the solid of a mesh";
   static constexpr std::tuple members{
-      Member{"rule", &MeshSolidRule::rule, "", "volume bounded by the shells, or winding number above 1/2"},
+      Member{"rule", &MeshSolidRule::rule, "",
+             "rule: the volume bounded by the shells, or the points with a winding number above 1/2"},
       Member{"reason", &MeshSolidRule::reason, "", "reason for this rule, in one sentence"},
   };
 };
@@ -755,8 +763,8 @@ struct Description<MeshSolidRule> {
 /// Checks an axis against the solid that a closed, manifold mesh bounds.
 ///
 /// The check uses no field, no voxels and no record of the construction. The Betti numbers of the solid follow from the
-/// homology of its shells and their nesting. The nesting is found by counting how often lines cross the shells. The
-/// verifier has its own code for distances. Verifier and construction share four parts: the search for crossings of
+/// homology of its shells and their nesting. The nesting of the shells is found by counting how often lines cross them.
+/// The verifier has its own code for distances. Verifier and construction share four parts: the search for crossings of
 /// triangles, the resolution of crossings, signs of determinants and the numbering of sites. Shells may face either
 /// way, and may touch each other. Triangles with the same vertex twice are ignored. If the mesh crosses itself, the
 /// result of resolve_crossings() bounds the solid.
@@ -765,8 +773,8 @@ struct Description<MeshSolidRule> {
 /// vertex. Linking and winding numbers prove that loops and closed surfaces of the axis go around the tunnels and voids
 /// of their body (HomologyCheck).
 /// @throws InvalidMesh if the mesh is not closed and manifold, or if it has crossings that resolve_crossings() cannot
-/// resolve. It is also thrown if a shell encloses no volume, or exactly the same volume as another shell. InvalidOption
-/// if the complex is invalid (see homology()) or lacks a column of MedialView; Cancelled.
+/// resolve. InvalidMesh is also thrown if a shell encloses no volume, or exactly the same volume as another shell.
+/// InvalidOption if the complex is invalid (see homology()) or lacks a column of MedialView; Cancelled.
 /// Cost: about 2 s on one core for an axis with 100,000 vertices and a mesh with 100,000 triangles.
 [[nodiscard]] Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options = {},
                                   const Context& context = {});
@@ -774,8 +782,8 @@ struct Description<MeshSolidRule> {
 /// Checks an axis against the closed union of voxels. If `surface` is nullptr, the voxels are those of an image, and
 /// distances are measured to their faces. If `surface` is a mesh, the voxels represent this mesh, which is not a
 /// polyhedron (SolidRule::winding). Distances are then measured to the mesh. The function voxels_inside() computes the
-/// voxels of a mesh. All voxels are used as given. So an error in the voxels that the axis was made from is not
-/// detected if the same voxels are passed here.
+/// voxels of a mesh. The function uses the voxels as given. If the voxels that the axis was made from are wrong, and
+/// the same voxels are passed here, the function does not detect the error.
 /// @param grid  grid whose nodes are the centres of the voxels.
 /// @param surface  mesh that the voxels represent; nullptr for an image.
 /// @throws InvalidGrid, also if the grid does not cover the mesh. InvalidMesh. InvalidOption, also if the sizes of the

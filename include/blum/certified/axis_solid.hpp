@@ -13,7 +13,7 @@ namespace blum {
 
 /// Options that select the solid in an image or a mesh. A selection comes from the user or from the file of an axis.
 struct SolidSelection {
-  /// Images: voxels of this value form the solid. At most one of label and threshold is set.
+  /// Images: voxels of this value form the solid. At most one of `label` and `threshold` is set.
   std::optional<std::int64_t> label = {};
   std::optional<double> threshold = {};  ///< Images: voxels of this value or more form the solid.
   std::optional<double> weld = {};       ///< Meshes: MeshReadOptions::weld, mesh units.

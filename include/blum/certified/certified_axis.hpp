@@ -38,7 +38,7 @@ struct AxisCandidate {
   const MedialMetadata& metadata;  ///< Describes how the axis was made; source, version and selection are unset.
   const MedialAxis* whole;         ///< Axis of all angles from which this axis was made; nullptr if none.
   double grid_shift;               ///< MedialAxisOptions::grid_shift of `whole`, voxels.
-  std::vector<PhaseTime>& phases;  ///< Times of the whole run; CertifyAxis may append its own.
+  std::vector<PhaseTime>& phases;  ///< Times of all phases so far; CertifyAxis may append further phases.
 };
 
 /// Function that certifies an axis. If a program writes the axis to a file, this function should check the written
@@ -50,7 +50,7 @@ using CertifyAxis = FunctionRef<Certificate(const AxisCandidate&)>;
 struct CertifiedAxis {
   DecimatedAxis axis;
   MedialMetadata metadata;  ///< As AxisCandidate::metadata.
-  Certificate certificate;  ///< May fail in results of certified_axes(): check Certificate::holds().
+  Certificate certificate;  ///< The certificate may fail in results of certified_axes(): check Certificate::holds().
   /// Reasons why better forms are not used (WarningCode::form_not_certified). Empty if the best form is certified, or
   /// if no form is certified. If no form is certified, `certificate` contains the mismatches of the last form.
   std::vector<Warning> warnings;
@@ -63,9 +63,10 @@ struct CertifiedAxes {
   double grid_shift = 0;            ///< MedialAxisOptions::grid_shift of the grid that was kept, voxels.
   /// Warnings about the grid. Warnings about one axis are in CertifiedAxis::warnings.
   std::vector<Warning> warnings;
-  /// One sentence for each failure: first those of model_problems(), then those of each axis ("at theta 60: ...").
+  /// One sentence for each failure: first the sentences of model_problems(), then those of each axis ("at theta 60:
+  /// ...").
   std::vector<std::string> mismatches;
-  std::vector<PhaseTime> phases;  ///< Time of each phase, also for grids that were tried in vain.
+  std::vector<PhaseTime> phases;  ///< Time of each phase, including grids that were not kept.
 
   /// Returns true if model_problems() reports no problem and all axes are certified.
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
@@ -79,20 +80,20 @@ struct AxisGrids {
   FunctionRef<std::shared_ptr<const MedialAxis>(double shift)> make;
 };
 
-/// Returns the axes of a solid as `blum medial` writes them.
+/// Returns the axes of a solid in the form in which `blum medial` writes them.
 ///
 /// Each axis is made in up to four forms, until one form is certified. The first form has few vertices, and borders of
 /// sheets fitted to the surface. The second form has all vertices and fitted borders. The third form has few vertices,
-/// and borders that follow the cells of the grid. The fourth form has all vertices that these cells yield. If walls are
-/// thin, a form may fail although the next form is certified. The fourth form has the full detail of the grid's cells.
-/// The first three forms are easier to view.
+/// and borders that follow the cells of the grid. The fourth form has all vertices, and borders that follow the cells
+/// of the grid. If walls are thin, a form may fail although the next form is certified. The fourth form has the full
+/// detail of the grid's cells. The first three forms are easier to view.
 ///
 /// Walls much thinner than a voxel may be represented badly on one grid and well on another. If an axis is not
 /// certified in any form, the function moves the grid by a fraction of a voxel and tries again. The grid is moved only
 /// if model_problems() reports no problem. At most three other grids are tried. The grid with the fewest mismatches is
 /// kept.
-/// @throws InvalidOption if an option is out of range. Also the exceptions of `make`, `certify`, MedialAxis::lean(),
-/// decimate() and prune_sheets(). Nothing is thrown if an axis is not certified: check holds().
+/// @throws InvalidOption if an option is out of range. The function also throws the exceptions of `make`, `certify`,
+/// MedialAxis::lean(), decimate() and prune_sheets(). Nothing is thrown if an axis is not certified: check holds().
 /// Cost: one call of `make` for each grid, and one call of `certify` for each grid, angle and form. In most cases, one
 /// grid and one form are enough.
 [[nodiscard]] CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify,

@@ -31,8 +31,8 @@ struct MedialClaims {
   bool has_labels = true;
 };
 
-/// Error if a mesh does not bound a polyhedron, and the file of the axis does not give a grid. The solid then consists
-/// of voxels, whose grid is unknown.
+/// Error if a mesh does not bound a polyhedron, and the file of the axis does not give a grid. The solid of such a mesh
+/// consists of voxels, and their grid is unknown.
 class UnknownVoxels : public InvalidMesh {
  public:
   explicit UnknownVoxels(const std::string& reason)
@@ -48,7 +48,7 @@ class UnknownVoxels : public InvalidMesh {
 
 /// Returns one sentence for each false claim. A claim is false if the rule in the file differs from `found`. A claim is
 /// false if the sides of voxels in the file differ from those of the image. For the voxels of a mesh, the spacing in
-/// the file must equal the steps of the grid in the file. A file that states that Blum wrote it must contain all data
+/// the file must equal the steps of the grid in the file. If a file states that Blum wrote it, it must contain all data
 /// that Blum always writes, and sites of the solid's kind.
 /// @param found  actual rule of the solid.
 /// @param image_grid  grid of the voxels' centres for an image, else nullptr.
@@ -76,7 +76,7 @@ class MeshAxisVerifier {
   /// @param available_memory  bytes; a grid that needs more is rejected.
   /// @throws UnknownVoxels if a grid is needed and the claims contain none. InvalidGrid if the grid has fewer than 8
   /// steps along the longest side of the mesh. InvalidMesh if no voxel of the grid lies inside the mesh. OutOfMemory.
-  /// Also the exceptions of certify() and voxels_inside().
+  /// The function also throws the exceptions of certify() and voxels_inside().
   [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims,
                                    const CertificateOptions& options = {}, double available_memory = 1e300,
                                    const Context& context = {}) const;

@@ -10,14 +10,14 @@ namespace blum {
 
 /// Writes a file so that no reader ever finds an incomplete file under its name.
 ///
-/// The bytes are written to a temporary file in the same directory. Then commit() flushes this file to the disk and
-/// renames it, so that it replaces the target. If commit() is not called, the temporary file is removed and an existing
-/// target is unchanged. The new file gets the permissions of the replaced file, and its owner and group if the system
-/// allows it. If the target is a symbolic link, the link is kept, and the file that the link points to is replaced or
-/// created. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly, and cannot be
-/// restored. A target that is a directory, or that may not be written, is rejected at once.
+/// The bytes are written to a temporary file in the directory of the target. Then commit() flushes this file to the
+/// disk and renames it, so that it replaces the target. If commit() is not called, the temporary file is removed and an
+/// existing target is unchanged. The new file gets the permissions of the replaced file, and its owner and group if the
+/// system allows it. If the target is a symbolic link, the link is kept, and the file that the link points to is
+/// replaced or created. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly, and
+/// cannot be restored. A target that is a directory, or that may not be written, is rejected at once.
 ///
-/// Small writes are collected in a buffer of 256 KiB. Several threads must not use an object at the same time.
+/// Small writes are collected in a buffer of 256 KiB. An object must not be used by several threads at the same time.
 class AtomicFile {
  public:
   /// @throws FileError if the file cannot be created. The message contains the path and the system's reason.
@@ -30,13 +30,14 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
 
   /// Appends `size` bytes.
-  /// @throws FileError if the system refuses (disk full, for example), or after finish() or commit().
+  /// @throws FileError if the system reports an error (for example, that the disk is full), or after finish() or
+  /// commit().
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
   /// Flushes all written bytes to the disk and closes the file, so that commit() only has to rename it. Call finish()
   /// for several files that should appear together. May be called once, before commit(). If finish() is not called,
-  /// commit() does this work.
+  /// commit() also flushes and closes the file.
   /// @throws FileError in the same cases as commit().
   void finish();
 

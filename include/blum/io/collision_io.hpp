@@ -21,16 +21,16 @@ namespace blum {
 /// Pairs of moving features to be tested for collisions, with the correct answers if the file contains them.
 struct ImpactQueries {
   std::vector<FourMovingPoints> points;
-  std::vector<std::optional<bool>> truth;  ///< for each query: true if the features meet; unset if the answer is not
-                                           ///< known
+  /// for each query: true if the features meet; unset if the file does not contain the answer
+  std::vector<std::optional<bool>> truth;
 };
 
 /// Reads a file of queries. The format is that of the data sets of Wang et al. 2021 (A large-scale benchmark and an
 /// inclusion-based algorithm for continuous collision detection). The file is text without a header row. Each query has
-/// eight rows: its four points at time 0, then the same points at time 1. The points are a vertex and the three corners
-/// of a face, or the two ends of one edge and the two ends of another. Columns are separated by commas. Each of x, y
-/// and z has two columns: an integer numerator and an integer denominator. If the answer is known, the last column is 0
-/// or 1, and is the same in all eight rows. Each coordinate must be exactly representable as a double.
+/// eight rows: its four points at time 0, then the same points at time 1. The four points are a vertex and the three
+/// corners of a face, or the ends of one edge and the ends of another edge. Columns are separated by commas. Each of x,
+/// y and z has two columns: an integer numerator and an integer denominator. If the answer is known, the last column is
+/// 0 or 1, and is the same in all eight rows. Each coordinate must be exactly representable as a double.
 /// @throws FileError.
 /// @throws FormatError with the number of the line.
 [[nodiscard]] ImpactQueries read_impact_queries(const std::filesystem::path& path);
@@ -62,19 +62,20 @@ struct MeshMotion {
 ///   `.vtp`   VTK poly data: the two features of each pair, at their positions at the time of the collision. A face is
 ///            a triangle, and an edge is a line. The vertex that meets a face is an isolated vertex. Point data are
 ///            `pair`, `time` and `vertex`. Cell data are `pair`, `time` and, for triangles, `face`. Pairs are numbered
-///            from 0: first those of vertex_face, then those of edge_edge. read_complex() reads these files, too.
+///            from 0: first the pairs of vertex_face, then the pairs of edge_edge. read_complex() reads these files,
+///            too.
 ///
 /// A file appears under its name only when it is complete.
 /// @param mesh  the mesh in which the collisions were found; its `end` is used for .vtp only.
 /// @throws InvalidOption for another extension.
-/// @throws InvalidOption if the mesh does not have a face of the collisions. For .vtp, it is also thrown if the mesh
-/// does not have a vertex of the collisions, or if `end` has the wrong length.
+/// @throws InvalidOption if the mesh does not have a face of the collisions. For .vtp, InvalidOption is also thrown if
+/// the mesh does not have a vertex of the collisions, or if `end` has the wrong length.
 /// @throws FileError, Cancelled.
 void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshMotion& mesh,
                       const FileMetadata& metadata = {}, const Context& context = {});
 
-/// Writes the collisions between objects of a scene. The formats are those for the collisions of one mesh (see above),
-/// with the following additions.
+/// Writes the collisions between objects of a scene. The formats are those of write_collisions() for one mesh, with the
+/// following additions.
 ///
 ///   `.npz`   `vertex_face_object` [n, 2] holds the index of the vertex's object, then the index of the face's object.
 ///            `edge_edge_object` [m, 2] holds the indices of the two edges' objects. Indices of vertices and faces
@@ -85,7 +86,8 @@ void write_collisions(const std::filesystem::path& path, const ContinuousCollisi
 ///
 /// Collisions are in rising order of the pair (first object, second object). For each pair of objects, the collisions
 /// of vertices of the first object come first, then those of vertices of the second object.
-/// @param objects  the mesh of each object of the scene; for .vtp, at its position in the scene.
+/// @param objects  the mesh of each object of the scene; for .vtp, the mesh must be at the object's position in the
+///                 scene.
 /// @throws InvalidOption, also for collisions of objects that are not in `objects`.
 void write_collisions(const std::filesystem::path& path, const SceneCollisions& collisions,
                       std::span<const MeshMotion> objects, const FileMetadata& metadata = {},

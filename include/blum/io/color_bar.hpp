@@ -23,7 +23,7 @@ void draw_text(Picture& picture, double x, double baseline, double height, std::
 /// picture.
 void draw_frame(Picture& picture, int x0, int y0, int width, int height);
 
-/// Returns 1, 2 or 5 times a power of ten, such that about `wanted` steps fit into a range.
+/// Returns a step of 1, 2 or 5 times a power of ten, such that about `wanted` steps fit into a range.
 /// @param range  > 0, finite.
 [[nodiscard]] double round_step(double range, double wanted);
 

@@ -8,8 +8,9 @@
 namespace blum {
 
 /// Draft of a file: a file that is written, and perhaps read again, before it replaces another file. The draft is a
-/// hidden file in the same directory, with the same extension and a new name. If the name of the other file is a link,
-/// keep() replaces the file that the link points to. The destructor deletes the draft, unless keep() was called.
+/// hidden file in the directory of the file to be replaced, with the same extension and a new name. If the file to be
+/// replaced is a link, keep() replaces the file that the link points to. The destructor deletes the draft, unless
+/// keep() was called.
 class Draft {
  public:
   /// Creates an empty draft.
@@ -25,8 +26,8 @@ class Draft {
   [[nodiscard]] const std::filesystem::path& path() const { return draft_; }
   /// Returns the name of the file to be replaced.
   [[nodiscard]] const std::filesystem::path& name() const { return name_; }
-  /// Renames the draft to the name of the file to be replaced. If that file exists, the draft gets its permissions. May
-  /// be called once.
+  /// Renames the draft to the name of the file to be replaced. If the file to be replaced exists, the draft gets the
+  /// permissions of this file. May be called once.
   /// @throws FileError.
   void keep();
 

@@ -15,20 +15,20 @@
 
 namespace blum {
 
-/// Further content of a field file. All members are optional. Mesh and sites are not copied, and must outlive this
-/// object.
+/// Further content of a field file. All members are optional. The mesh and the sites are not copied, and must outlive
+/// this object.
 struct FieldFileInfo {
-  /// Mesh of the field. Its vertices, and the vertices of its sites, are written to .npz files.
+  /// Mesh of the field. The vertices of the mesh, and the vertices of its sites, are written to .npz files.
   const MeshView* mesh = nullptr;
-  /// Sites of `mesh`. If they are missing, they are computed from `mesh` if needed.
+  /// Sites of `mesh`. If the sites are needed but not given, they are computed from `mesh`.
   const SiteTable* sites = nullptr;
   /// Source of the shape, for example a file name.
   std::string source = {};
   /// Version of Blum that computed the field.
   std::string version = {};
-  /// Meaning of the world axes, with the names of NRRD: VoxelImage::space of the field's image. NRRD files hold it as
-  /// their `space`, and other formats hold it in their metadata. In NRRD files, a name that NRRD does not define is
-  /// left out.
+  /// Meaning of the world axes, with the names of NRRD: VoxelImage::space of the field's image. NRRD files hold this
+  /// text as their `space`, and other formats hold it in their metadata. In NRRD files, a name that NRRD does not
+  /// define is left out.
   std::string space = {};
 };
 
@@ -49,13 +49,13 @@ struct FieldFileInfo {
 ///
 /// The metadata contain Blum's version, the source, the sign rule and its reason, and the band. The metadata also
 /// describe the site values and, if FieldFileInfo::sites is given, the numbers of vertices, edges and faces. If the
-/// field has no sites, none are written. Numbers are stored in the byte order of the machine, which is stated in the
-/// files. The same input gives the same bytes.
+/// field has no sites, no sites are written. Numbers are stored in the byte order of the machine, which is stated in
+/// the files. The same input gives the same bytes.
 ///
 /// A file appears under its name only when it is complete. For .nrrd, all files are complete before any of them
-/// appears. If a field without sites replaces OUT.nrrd, the old OUT.site.nrrd is removed, provided that it names
-/// OUT.nrrd as its field. If a field of order 1 replaces a field of order 2, the files of the second distances and
-/// second sites are removed, too.
+/// appears. If a field without sites replaces OUT.nrrd, the old OUT.site.nrrd is removed if it names OUT.nrrd as its
+/// field. If a field of order 1 replaces a field of order 2, the files of the second distances and second sites are
+/// removed, too.
 /// @throws InvalidOption for another extension.
 /// @throws FileError if the system reports an error.
 /// @throws InvalidGrid if the field does not fit its grid.

@@ -13,10 +13,10 @@
 
 namespace blum {
 
-/// Returns the kind of content of a file. The extension decides, or the first bytes if the extension is not known. An
-/// .nrrd file is a field if it states that Blum wrote it as a field, else an image. An .npz file is a field unless it
-/// is a complex (see holds_complex()). Files of .ply and .obj are meshes. If the path names a pipe, the function reads
-/// the pipe and stores its bytes. The next function that reads the whole file gets the stored bytes.
+/// Returns the kind of content of a file. The extension of the file decides, or the first bytes if the extension is
+/// unknown. An .nrrd file is a field if it states that Blum wrote it as a field, else an image. An .npz file is a field
+/// unless it is a complex (see holds_complex()). Files of .ply and .obj are meshes. If the path names a pipe, the
+/// function reads the pipe and stores its bytes. The next function that reads the whole file gets the stored bytes.
 /// @throws FileError if the file cannot be opened, is a directory or has no known content.
 [[nodiscard]] FileContent content_of(const std::filesystem::path& path);
 
@@ -28,7 +28,7 @@ namespace blum {
 [[nodiscard]] bool holds_complex(const std::filesystem::path& path);
 
 /// Returns true if a file may be a field: it is a field written by Blum, or an .nrrd file of floating-point numbers.
-/// The numbers in such an .nrrd file may be distances that another program computed.
+/// The numbers in an .nrrd file of another program may be distances.
 /// @throws FileError in the same cases as content_of().
 [[nodiscard]] bool may_hold_field(const std::filesystem::path& path);
 

@@ -53,7 +53,7 @@ enum class FileAccess : std::uint8_t {
 };
 
 /// File format of one kind of content. If several kinds of content use the same format name (PLY), there is a
-/// FileFormat for each.
+/// FileFormat for each kind of content.
 struct FileFormat {
   FileContent content = FileContent::mesh;
   std::string name;                     ///< for example "PLY"
@@ -61,7 +61,7 @@ struct FileFormat {
                                         ///< first
   std::vector<std::string> written;     ///< extensions that are written: some of those that are read, or others if the
                                         ///< format is not read
-  std::string holds;                    ///< description of the possible content, for people
+  std::string holds;                    ///< description of the content that a file may have, for people
   std::string opens_in;                 ///< other programs that open the files, for people
 };
 
@@ -76,8 +76,8 @@ struct Description<FileFormat> {
       Member{"extensions", &FileFormat::extensions, "", "extensions that are read, in lower case, with the dot"},
       Member{"written", &FileFormat::written, "",
              "extensions that are written: some or all of those that are read, or others if the format is not read"},
-      Member{"holds", &FileFormat::holds, "", "description of the possible content"},
-      Member{"opens_in", &FileFormat::opens_in, "", "names of other programs that open such files"},
+      Member{"holds", &FileFormat::holds, "", "description of the content that a file may have"},
+      Member{"opens_in", &FileFormat::opens_in, "", "names of other programs that open the files"},
   };
 };
 

@@ -22,8 +22,8 @@ namespace blum {
 struct GltfAttribute {
   std::string name;            ///< Letters, digits, `_`, `-` and `.`; without the `_` that is added in files.
   std::size_t components = 1;  ///< Numbers for each vertex, 1 to 4.
-  /// All numbers, in the order of the vertices. Infinite numbers and NaN are changed, because glTF allows finite
-  /// numbers only. +-infinity becomes +-3.4028235e38 (the largest float), and NaN becomes 3.4028235e38.
+  /// Numbers of all vertices, in the order of the vertices. Infinite numbers and NaN are changed, because glTF allows
+  /// finite numbers only. +-infinity becomes +-3.4028235e38 (the largest float), and NaN becomes 3.4028235e38.
   std::span<const float> values;
 };
 
@@ -37,17 +37,15 @@ struct GltfMesh {
   std::span<const Triangle> triangles = {};
   std::span<const std::array<std::uint32_t, 2>> segments = {};  ///< Drawn as lines.
   std::span<const std::uint32_t> points = {};                   ///< Vertices that are drawn as points.
-  std::span<const Vec3f> normals = {};                          ///< One for each vertex, of any length except zero; may
-                                                                ///< be empty.
-  std::vector<GltfAttribute> attributes = {};                   ///< Attributes of the vertices; their names must
-                                                                ///< differ.
+  std::span<const Vec3f> normals = {};         ///< One normal for each vertex, of any length except zero; may be empty.
+  std::vector<GltfAttribute> attributes = {};  ///< Attributes of the vertices, with different names.
   /// Texture coordinates of the corners of each triangle; may be empty. Within the texture, u increases from 0 to 1 to
   /// the right, and v downwards. A vertex is written once for each of its different texture coordinates, and vertices
   /// of no triangle are left out. If there are texture coordinates, segments and points must be empty.
   std::span<const std::array<std::array<float, 2>, 3>> texture_coordinates = {};
-  /// Bytes of a PNG file; may be empty. A texture requires texture coordinates. Its colours are shown unchanged,
-  /// without lighting (KHR_materials_unlit). Colours are interpolated bilinearly, without mipmaps, and clamped at the
-  /// borders.
+  /// Bytes of a PNG file; may be empty. A texture requires texture coordinates. The colours of the texture are shown
+  /// unchanged, without lighting (KHR_materials_unlit). Colours are interpolated bilinearly, without mipmaps, and
+  /// clamped at the borders.
   std::span<const std::byte> texture = {};
   GltfExtras extras = {};
 };
@@ -55,8 +53,9 @@ struct GltfMesh {
 /// Writes a binary glTF 2.0 file, which appears complete or not at all. The same input gives the same bytes.
 ///
 /// Positions are in single precision. If the distance of the mesh from the origin is larger than the mesh, positions
-/// are relative to the middle of its box. The translation of the glTF node then contains that middle in double
-/// precision. Axes and units are not converted (glTF expects metres, with y up). Triangles are visible from both sides.
+/// are relative to the middle of its box. In this case, the translation of the glTF node contains the middle of the box
+/// in double precision. Axes and units are not converted (glTF expects metres, with y up). Triangles are visible from
+/// both sides.
 /// @throws InvalidMesh if a corner has the index of a missing vertex, or the mesh has more than 2^31 - 1 vertices.
 /// InvalidMesh is also thrown if a written position is not finite or beyond single precision.
 /// @throws InvalidOption if other members are not as described at GltfMesh and GltfAttribute.

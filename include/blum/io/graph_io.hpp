@@ -20,10 +20,10 @@ namespace blum {
 ///               `junction0`, `patch0` and, for closed curves, `curve0`. An edge `curve` joins two junctions. An edge
 ///               `incidence` joins a sheet and one of its seams. Edges `incidence` also join a seam and one of its
 ///               junctions, and a sheet and a junction on it. An edge `wall` joins a sheet and a patch on one of its
-///               sides. Its `share` is the sum of the shares of the sheet's patch pairs that contain the patch. The
-///               other attributes are all members that are numbers, words or truth values, with their names. A nested
-///               member has the names of both members (`thickness_median`). Names of vector components end with _x, _y,
-///               _z. Metadata are attributes of the graph.
+///               sides. The attribute `share` of a wall is the sum of the shares of the sheet's patch pairs that
+///               contain the patch. The other attributes are all members that are numbers, words or truth values, with
+///               their names. A nested member has the names of both members (`thickness_median`). Names of vector
+///               components end with _x, _y, _z. Metadata are attributes of the graph.
 ///
 /// A file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension.

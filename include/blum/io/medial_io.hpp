@@ -36,8 +36,8 @@ struct MedialFile {
 /// Returns the claims that a file makes about its axis.
 [[nodiscard]] MedialClaims claims_of(const MedialFile& file);
 
-/// Writes a medial axis as a complex (see write_complex), or as .ma. The extension selects the format. If the complex
-/// lacks columns of MedialView, they are not written, and the file does not contain Blum's version.
+/// Writes a medial axis as a complex (see write_complex), or as .ma. The extension selects the format. Columns of
+/// MedialView that the complex lacks are not written. In this case, the file does not contain Blum's version.
 ///
 /// Columns of vertices are `radius`, `footprint_0`, `footprint_1` (3 components) and `separation_angle` (float64),
 /// `site_0`, `site_1` and `role` (int32). Columns of edges are `separation_angle` (float32) and `role` (int32). Columns
@@ -62,8 +62,9 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 
 /// Writes a medial axis with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files can hold the
 /// axes of all angles. The axes of all angles are stored as the further complex `nested`, with additional columns
-/// (float32). For a vertex or triangle, `until` is the theta at which it vanishes (inf: never). For an edge, `from` and
-/// `until` are the values of theta between which it has its role. `nested_theta` in the metadata is the least theta.
+/// (float32). For a vertex or triangle, `until` is the theta at which this cell vanishes (inf: never). For an edge,
+/// `from` and `until` are the values of theta between which the edge has its role. `nested_theta` in the metadata is
+/// the least theta.
 /// @throws InvalidOption for other formats.
 /// @param least_theta  MedialAxis::least_theta(), degrees.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
@@ -75,8 +76,8 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// Reads a file written by write_medial(), or a file of the same form written by another program (see read_complex()).
 /// Any column of MedialView may be missing. Other columns in the file are kept, and follow the columns of MedialView.
 /// If write_medial() wrote a .vtp, .ply or .npz file, the result equals the written axis exactly. If a file has no
-/// roles of edges, edges that are sides of triangles are left out, because the triangles imply them. All other edges
-/// are then curves.
+/// roles of edges, edges that are sides of triangles are left out, because the triangles imply them. In this case, all
+/// other edges are curves.
 /// @throws FileError.
 /// @throws FormatError with the file and the reason.
 /// @throws InvalidOption for another extension.

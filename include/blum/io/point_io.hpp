@@ -22,9 +22,9 @@ namespace blum {
 ///
 ///   `.npy`  An array [n, 3] of numbers.
 ///   `.npz`  The array `points` [n, 3] or, if it is missing, `vertices` [n, 3].
-///   `.csv`, `.xyz`, `.txt`  A row for each point. Its first three numbers are the coordinates, separated by commas,
-///                           semicolons or blanks; the rest of the row is ignored. Empty rows, rows that begin with
-///                           `#`, and a first row of names are ignored, too.
+///   `.csv`, `.xyz`, `.txt`  A row for each point. The first three numbers of a row are the coordinates, separated by
+///                           commas, semicolons or blanks; the rest of the row is ignored. Empty rows, rows that begin
+///                           with `#`, and a first row of names are ignored, too.
 ///   `.ply`, `.vtp`, `.obj`, `.off`, `.stl`  The vertices of the mesh or complex, in their order.
 ///
 /// @throws FileError.
@@ -41,13 +41,13 @@ namespace blum {
 ///
 ///   `.ply`, `.vtp`  As write_complex() does.
 ///   `.npz`          An array `points` [n, 3], one array for each column under its name, and `metadata`, a JSON object.
-///   `.csv`          A row of names: x, y, z, then those of the columns. The row of names is followed by a row for each
-///                   point. A column of three numbers has the names NAME_x, NAME_y, NAME_z. A column of two, or more
-///                   than three, numbers has NAME_0, NAME_1, ... CSV files have no metadata.
+///   `.csv`          A row of names: x, y, z, then the names of the columns. The row of names is followed by a row for
+///                   each point. A column of three numbers has the names NAME_x, NAME_y, NAME_z. A column of two, or
+///                   more than three, numbers has NAME_0, NAME_1, ... CSV files have no metadata.
 ///
 /// Numbers in text are exact.
 /// @param metadata  if the key `content` is missing, it is added with the text "points". Functions that read axes and
-///                  fields reject files with this content.
+///                  fields reject files whose `content` is "points".
 /// @param points    a complex of vertices alone; validate(points) must pass.
 /// @throws InvalidMesh, also if `points` has edges or triangles.
 /// @throws InvalidOption for another extension, and in .npz for a column with the name `points` or `metadata`.

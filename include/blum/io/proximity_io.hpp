@@ -31,8 +31,8 @@ namespace blum {
 /// @param more     further columns, with a row for each pair; may be empty. The further columns follow the numbers
 ///                 above, as arrays of .npz, columns of .csv, lists of .json, and cell data of .vtp. In .csv, a column
 ///                 of several components becomes name_0, name_1, ...
-/// @throws InvalidOption for another extension, and for pairs with an object that is not in `objects` or a primitive
-/// that its mesh does not have.
+/// @throws InvalidOption for another extension, and for pairs with an object that is not in `objects`, or a primitive
+/// that the object's mesh does not have.
 /// @throws InvalidOption if `more` has another number of rows than pairs, or a column with the name of one of the .npz
 /// arrays above.
 /// @throws FileError, Cancelled.

@@ -37,16 +37,16 @@ struct SurfaceMapWriteOptions {
 ///
 ///   `.npz`  Everything. Arrays of a texture of h rows and w columns, for a mesh of n vertices and t triangles.
 ///           `distance` [h, w] and `vector` [h, w, 3] are float32. `site` and `triangle` [h, w] are int32 (-1: none).
-///           Rows are from the top. `corners` [t, 3, 2] (float64) holds the positions of the triangles' corners in the
-///           texture, in texels (x to the right, y down). `vertices` [n, 3] is float64, `triangles` [t, 3] int32,
-///           `vertex_distance` [n] float64. `triangle_error` (if the map has errors), `triangle_smallest`,
+///           Rows are listed from the top. `corners` [t, 3, 2] (float64) holds the positions of the triangles' corners
+///           in the texture, in texels (x to the right, y down). `vertices` [n, 3] is float64, `triangles` [t, 3]
+///           int32, `vertex_distance` [n] float64. `triangle_error` (if the map has errors), `triangle_smallest`,
 ///           `triangle_largest` and `triangle_mean` [t] are float32. `metadata` is a JSON object.
 ///   `.png`  The texture in colours; texel (i, j) is pixel (i, j). A colour bar with numbers and units is to the right
 ///           of the texture.
 ///   `.glb`  Binary glTF (see write_gltf()): the mesh with the texture in colours. A vertex is written once for each
 ///           chart that contains it. Exact distances at vertices are the attribute `_DISTANCE`. Extras hold the
-///           metadata described below, `colors` ("sequential" or "diverging"), and `range` and `color_range`, each as
-///           two numbers.
+///           metadata (see the parameter `metadata`), `colors` ("sequential" or "diverging"), and `range` and
+///           `color_range`, each as two numbers.
 ///   `.ply`, `.vtp`  The mesh with exact distances at its vertices (column `distance`, float64). Triangles have the
 ///                   columns `smallest`, `largest`, `mean` and, if the map has errors, `error` (float32). See
 ///                   write_complex().
@@ -83,7 +83,7 @@ struct SurfaceMapFile {
 /// their triangle. Sites are not checked, because the file does not contain the mesh of the sites.
 /// @throws FormatError that states the reason.
 /// @throws FileError, OutOfMemory.
-/// Cost: about the time of reading the file. Memory is limited by the size of the file's content.
+/// Cost: about the time of reading the file. Memory is limited by the size of the content of the file.
 [[nodiscard]] SurfaceMapFile read_surface_map(const std::filesystem::path& path);
 /// Reads a surface map from memory. @param name  used as the name of the file in messages.
 [[nodiscard]] SurfaceMapFile read_surface_map(std::span<const std::byte> bytes, const std::string& name);

@@ -16,8 +16,8 @@ namespace blum {
 
 /// Returns the metadata of a Voronoi diagram for write_complex(). The keys are `content` ("Voronoi diagram", or "walls
 /// of a Voronoi diagram" if the surface is not included), `blum_version`, and `certified`. If the complex is certified,
-/// the metadata also contain `hausdorff_bound` (mesh units). Otherwise, the metadata contain `failing_cubes`, the
-/// number of cubes that fail the check.
+/// the metadata also contain `hausdorff_bound` (mesh units). If the complex is not certified, the metadata contain
+/// `failing_cubes`, the number of cubes that fail the check.
 /// @param hausdorff_bound  the bound in VoronoiReport; nullopt if the complex is not certified. The value 0 means that
 /// the bound is unknown; it is not written.
 [[nodiscard]] FileMetadata voronoi_metadata(VoronoiPart part, std::optional<double> hausdorff_bound,
@@ -32,10 +32,10 @@ namespace blum {
 ///               `kind`), `wall0`, `seam0` and `junction0`. An edge `incidence` joins a region and one of its walls.
 ///               Edges `incidence` also join a wall and one of its seams, and a seam and one of its junctions. If the
 ///               graph has regions, an edge `neighbours` joins two neighbouring regions. The attribute `area` of this
-///               edge is the area of the walls between the two regions. In a graph of patches, nodes `region3` are
-///               those of patches, with the patch's `kind`. The other attributes are all members that are numbers or
-///               words, with their names; components of vectors end with _x, _y, _z. Metadata are attributes of the
-///               graph.
+///               edge is the area of the walls between the two regions. In a graph of patches, a node such as `region3`
+///               is the region of a patch, with the patch's `kind`. The other attributes are all members that are
+///               numbers or words, with their names; components of vectors end with _x, _y, _z. Metadata are attributes
+///               of the graph.
 ///
 /// A file appears under its name only when it is complete.
 /// @param graph     result of voronoi_graph().

@@ -49,7 +49,7 @@ struct Description<CentrelineOptions> {
 enum class CentrelineNodeKind : std::uint8_t {
   point,    ///< Node of a component without branches, for example of a blob.
   end,      ///< End of one branch.
-  junction  ///< End of several branches, or both ends of one branch.
+  junction  ///< Common end of several branches, or of both ends of one branch.
 };
 template <>
 struct Description<CentrelineNodeKind> {
@@ -62,8 +62,8 @@ struct Description<CentrelineNodeKind> {
 struct CentrelineNode {
   CentrelineNodeKind kind = CentrelineNodeKind::point;
   Vec3d position{};   ///< World coordinates.
-  double radius = 0;  ///< Radius of the node's ball, world units. At an `end`, it is the radius of the branch there. At
-                      ///< other nodes, it is the distance to the closest voxel outside the label.
+  double radius = 0;  ///< Radius of the node's ball, world units. At an `end`, this is the radius of the branch at its
+                      ///< end. At other nodes, this is the distance to the closest voxel outside the label.
 };
 template <>
 struct Description<CentrelineNode> {
@@ -73,21 +73,21 @@ struct Description<CentrelineNode> {
       Member{"kind", &CentrelineNode::kind, "", "point (of a blob without branches), end or junction"},
       Member{"position", &CentrelineNode::position, "world units", "position"},
       Member{"radius", &CentrelineNode::radius, "world units",
-             "end: radius of its branch there; other kinds: distance to the closest voxel outside"},
+             "end: radius of the branch at its end; other kinds: distance to the closest voxel outside the label"},
   };
 };
 
 /// Curve between two nodes, or a closed curve without nodes.
 struct CentrelineBranch {
-  std::array<std::int32_t, 2> nodes{-1, -1};  ///< Indices of its first and last node; -1 for closed curves.
+  std::array<std::int32_t, 2> nodes{-1, -1};  ///< Indices of the branch's first and last node; -1 for closed curves.
   double length = 0;                          ///< Length of the polyline `points`, world units.
   /// Mean of `radii` along the part of the branch that is at least 1.5 voxels away from the balls of its junctions. If
-  /// no part of the branch is that far away, the mean along the whole branch.
+  /// no part of the branch is that far away, the mean is that of the whole branch.
   double mean_radius = 0;
   double min_radius = 0;  ///< Smallest of `radii` on the part of the branch that `mean_radius` uses.
   /// Polyline from the first to the last node. A closed curve ends with its first point.
   std::vector<Vec3d> points = {};
-  /// For each point: radius of the circle that has the area of the cross-section there.
+  /// For each point: radius of the circle that has the area of the cross-section at this point.
   std::vector<double> radii = {};
 };
 template <>
@@ -98,13 +98,14 @@ struct Description<CentrelineBranch> {
       Member{"nodes", &CentrelineBranch::nodes, "", "first and last node; -1 for closed curves"},
       Member{"length", &CentrelineBranch::length, "world units", "length of its polyline"},
       Member{"mean_radius", &CentrelineBranch::mean_radius, "world units",
-             "mean radius along the part at least 1.5 voxels away from its junctions' balls; if there is none, along "
-             "the whole branch"},
-      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "smallest radius on the same part"},
+             "mean radius along the part at least 1.5 voxels away from the balls of the junctions; without such a "
+             "part, along the whole branch"},
+      Member{"min_radius", &CentrelineBranch::min_radius, "world units",
+             "smallest radius on the part that mean_radius uses"},
       Member{"points", &CentrelineBranch::points, "world units",
              "polyline from node to node; for closed curves the first point is also the last"},
       Member{"radii", &CentrelineBranch::radii, "world units",
-             "radius at each point: that of the circle with the area of the cross-section there"},
+             "radius at each point: radius of the circle with the area of the cross-section at this point"},
   };
 };
 
@@ -132,7 +133,8 @@ struct Description<Centreline> {
       Member{"label_betti", &Centreline::label_betti, "", "components, tunnels, voids of the voxels"},
       Member{"graph_betti", &Centreline::graph_betti, "", "components, tunnels, voids of nodes and branches"},
       Member{"homotopy_kept", &Centreline::homotopy_kept, "", "true if label_betti and graph_betti are equal"},
-      Member{"homotopy", &Centreline::homotopy, "", "one sentence: kept, or the difference and its reason"},
+      Member{"homotopy", &Centreline::homotopy, "",
+             "one sentence: the homotopy type is kept, or the difference and its reason"},
   };
 };
 
@@ -146,12 +148,12 @@ struct Centrelines {
 ///
 /// Voxels of a label are connected through corners (26 neighbours). Voxels of the background are connected through
 /// faces (6 neighbours), as for betti_numbers(). Everything beyond the image is background. Voids of the label are
-/// filled first. Then voxels are removed in the order of their distance to the background, until only curves remain.
-/// Next, short branches with a free end are removed (CentrelineOptions::spur), and junctions are merged if they lie in
-/// each other's balls. All steps after the filling of voids preserve the homotopy type. Finally, each point of a curve
-/// is moved to the centroid of the point's cross-section, by at most the longest side of a voxel. The radius at a point
-/// is that of the circle with the area of the cross-section. The ball at a free end touches the tip of the label. See
-/// docs/theory/centrelines.md for the method.
+/// filled first. After that, voxels are removed in the order of their distance to the background, until only curves
+/// remain. Next, short branches with a free end are removed (CentrelineOptions::spur), and junctions are merged if they
+/// lie in each other's balls. All steps after the filling of voids preserve the homotopy type. Finally, each point of a
+/// curve is moved to the centroid of the point's cross-section, by at most the longest side of a voxel. The radius at a
+/// point is that of the circle with the area of the cross-section. The ball at a free end touches the tip of the label.
+/// See docs/theory/centrelines.md for the method.
 ///
 /// @param image  must pass validate(image).
 /// @return  the same bytes for any number of threads. Labels without voxels have neither nodes nor branches.
@@ -168,8 +170,8 @@ struct Centrelines {
 /// Returns warnings about the centrelines of an image with this grid. A warning may report that the image has a single
 /// layer of voxels (WarningCode::single_layer), or that a label has no voxels (WarningCode::nothing_found). A warning
 /// may also report that the topology of a label differs from that of the label's curves (WarningCode::other_topology).
-/// At most six warnings are returned. If more apply, the sixth warning gives the number of labels that have no separate
-/// warning.
+/// At most six warnings are returned. If more than six apply, the sixth warning gives the number of labels that have no
+/// separate warning.
 [[nodiscard]] std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid);
 
 /// Returns all branches as a complex, for files. An edge joins each point of a branch to the next point. Vertices have

@@ -74,8 +74,8 @@ struct Description<MedialAxisOptions> {
              "meshes: shift of the grid along each axis, to find how much the result depends on the grid",
              Range::between(-1, 1)},
       Member{"lambda", &MedialAxisOptions::lambda, "mesh units",
-             "smallest distance between the two footprints of a point; if they are closer, its separation angle counts "
-             "as 0",
+             "smallest distance between the two footprints of a point; if they are closer, the separation angle of the "
+             "point is 0",
              Range::at_least(0)},
       Member{"least_theta", &MedialAxisOptions::least_theta, "degrees",
              "smallest threshold theta that will be requested: a larger value is faster", Range::between(0, 180)},
@@ -89,8 +89,8 @@ struct Description<MedialAxisOptions> {
 /// Facts about the cells of one body: a connected part of the solid.
 struct BodyReport {
   BettiNumbers betti{};  ///< Betti numbers of the body.
-  /// True if the cells have the homotopy type of the body. The axis in this body then has the same homotopy type at
-  /// every theta.
+  /// True if the cells have the homotopy type of the body. If true, the axis in this body also has the homotopy type of
+  /// the body, at every theta.
   bool topology_matches = false;
   double spacing = 0;                  ///< Smallest side of a voxel, mesh units.
   std::size_t voxels = 0;              ///< Number of voxels whose centres are inside.
@@ -105,12 +105,12 @@ struct Description<BodyReport> {
   static constexpr std::tuple members{
       Member{"solid_betti", &BodyReport::betti, "", "components, tunnels, voids of the body"},
       Member{"topology_matches", &BodyReport::topology_matches, "",
-             "true if the cells, and so the axis at every theta, have the homotopy type of the body"},
+             "true if the cells have the homotopy type of the body, so that the axis has it at every theta"},
       Member{"spacing", &BodyReport::spacing, "mesh units", "smallest side of a voxel"},
       Member{"voxels", &BodyReport::voxels, "", "voxels with centres inside the body"},
-      Member{"extra_cells", &BodyReport::extra_cells, "", "cells of its model that do not belong to a voxel"},
+      Member{"extra_cells", &BodyReport::extra_cells, "", "cells of the body's model that do not belong to a voxel"},
       Member{"failures", &BodyReport::failures, "",
-             "places where the model may not have the homotopy type of the body"},
+             "boxes in which the model may not have the homotopy type of the body"},
   };
 };
 
@@ -119,12 +119,12 @@ struct MedialAxisReport {
   std::string reason;               ///< The reason for this rule, in one sentence.
   std::size_t reversed_shells = 0;  ///< Shells whose triangles faced the solid, and were reversed.
   BettiNumbers betti{};             ///< Betti numbers of the solid: the sum over its bodies.
-  bool topology_matches = false;    ///< True if BodyReport::topology_matches is true for all bodies. The axis then has
-                                    ///< the solid's homotopy type at every theta.
+  bool topology_matches = false;    ///< True if BodyReport::topology_matches is true for all bodies. If true, the axis
+                                    ///< has the solid's homotopy type at every theta.
   GridSpec grid;                    ///< Grid of voxel centres: that of the first body, or of the image.
   std::vector<BodyReport> bodies;
   std::vector<PhaseTime> phases;  ///< Seconds.
-  /// Warnings about reversed triangles and shells, and about a mesh whose solid is known only as voxels.
+  /// Warnings about reversed triangles and shells, and about a mesh whose solid is represented by voxels.
   std::vector<Warning> warnings;
 };
 
@@ -185,7 +185,7 @@ class MedialAxis {
   [[nodiscard]] DecimatedAxis lean(double theta, double tolerance, const Context& context = {}) const;
 
   /// Returns the axes of all angles from least_theta() to 180 degrees in one complex, for example for viewers. The axis
-  /// at any of these angles can be selected from this complex without further computation.
+  /// at any angle can be selected from the complex without further computation.
   ///
   /// The complex has the columns of MedialView and MedialLevels. The triangles, curves and vertices that exist at an
   /// angle contain the same points as the result of simplify() for that angle. Vertices at the same position are

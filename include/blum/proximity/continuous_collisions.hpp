@@ -67,7 +67,7 @@ struct ContinuousCollisions {
 
 /// Returns a warning if pairs meet at the start of a motion, otherwise an empty list. The time of a pair that meets at
 /// the start is 0, even if the two features move apart immediately.
-/// @param pairs  number of pairs with the time 0.
+/// @param pairs  number of pairs that meet at time 0.
 [[nodiscard]] std::vector<Warning> start_warnings(std::size_t pairs);
 /// Returns the warning for all pairs of a result that have the time 0, or an empty list.
 [[nodiscard]] std::vector<Warning> start_warnings(const ContinuousCollisions& found);

@@ -53,7 +53,7 @@ struct FirstContact {
 [[nodiscard]] SceneCollisions collisions_of(const FirstContact& contact);
 
 /// Returns the first contact of a moving mesh with itself: the earliest of all pairs that continuous_collisions()
-/// returns. The function does not search for the later pairs.
+/// returns. The function does not search for later pairs.
 /// @param mesh, end  as for continuous_collisions().
 /// @return  nullopt if nothing meets. In a contact, both objects have the number 0. The bytes are the same for any
 ///          number of threads.

@@ -29,12 +29,12 @@ struct Description<TranslationOptions> {
   static constexpr std::string_view doc = "Precision of the least translation that separates two solids";
   static constexpr std::tuple members{
       Member{"translation_tolerance", &TranslationOptions::translation_tolerance, "parts of the upper bound",
-             "largest gap between both bounds for convex solids; 0: as small as rounding permits",
+             "for convex solids: largest difference between the bounds; 0: as small as rounding permits",
              Range::between(0, 1)},
-      Member{"max_planes", &TranslationOptions::max_planes, "", "largest number of planes tried for convex solids",
-             Range::between(1, 1e9)},
-      Member{"max_tests", &TranslationOptions::max_tests, "", "largest number of translations tried for other solids",
-             Range::between(0, 1e9)},
+      Member{"max_planes", &TranslationOptions::max_planes, "",
+             "for convex solids: largest number of planes that are tried", Range::between(1, 1e9)},
+      Member{"max_tests", &TranslationOptions::max_tests, "",
+             "for solids that are not convex: largest number of translations that are tried", Range::between(0, 1e9)},
   };
 };
 
@@ -49,7 +49,7 @@ struct LeastTranslation {
   /// which may lower it by 1e-14 times the extent of both solids. The bound is 0 if the solids are apart or touch.
   double lower = 0;
   double upper = 0;  ///< Length of `translation`, mesh units.
-  /// Translation of the first solid. After this translation, the interiors of both solids are disjoint, except for
+  /// Translation of the first solid. After the translation, the interiors of both solids are disjoint, except for
   /// rounding.
   Vec3d translation;
   /// True if both solids are convex, except for rounding. If true, the bounds differ only by rounding, unless an option
@@ -66,7 +66,7 @@ struct Description<LeastTranslation> {
       Member{"upper", &LeastTranslation::upper, "mesh units", "length of 'translation', which separates the solids"},
       Member{"translation", &LeastTranslation::translation, "mesh units", "translation of the first solid"},
       Member{"are_convex", &LeastTranslation::are_convex, "",
-             "true if both solids are convex, so that both bounds are equal except for rounding"},
+             "true if both solids are convex, so that the bounds differ only by rounding"},
   };
 };
 

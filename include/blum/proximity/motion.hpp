@@ -25,17 +25,19 @@ struct ObjectMotion {
   ObjectId object;
   /// Positions of the vertices at time 1, before the transform is applied. If empty, the vertices do not change.
   std::span<const Vec3d> vertices = {};
-  std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, it does not change.
+  std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, the transform does not change.
 };
 
 /// Collisions of two objects, or of one object with itself.
 struct ObjectCollisions {
   ObjectId first;
   ObjectId second;
-  std::vector<VertexFaceCollision> vertex_face;  ///< Vertices of the first object, faces of the second object.
-  /// Vertices of the second object, faces of the first object; empty for collisions of an object with itself.
+  /// Collisions of vertices of the first object with faces of the second object.
+  std::vector<VertexFaceCollision> vertex_face;
+  /// Collisions of vertices of the second object with faces of the first object; empty if both objects are the same.
   std::vector<VertexFaceCollision> face_vertex;
-  std::vector<EdgeEdgeCollision> edge_edge;  ///< Edges of the first object, edges of the second object.
+  /// Collisions of edges of the first object with edges of the second object.
+  std::vector<EdgeEdgeCollision> edge_edge;
 
   /// Returns the earliest time of impact; nullopt if nothing collides.
   [[nodiscard]] std::optional<double> earliest() const;

@@ -49,11 +49,12 @@ struct Penetration {
   ObjectId second_object;
   double depth = 0;        ///< Mesh units; distance of `deep_point` and `surface_point`.
   double depth_bound = 0;  ///< Upper bound on the true depth, proven except for rounding.
-  /// Unit vector. If the first object moves by `depth` in this direction, `deep_point` and `surface_point` coincide.
+  /// Unit vector. If the first object moves by `depth` in the direction `direction`, `deep_point` and `surface_point`
+  /// coincide.
   Vec3d direction;
   Vec3d deep_point;            ///< Deepest point, on the surface of one object and inside the other object.
   Vec3d surface_point;         ///< Point of the other object's surface that is closest to `deep_point`.
-  bool is_first_deep = false;  ///< True if `deep_point` lies on the first object's surface, false if on the second's.
+  bool is_first_deep = false;  ///< True if `deep_point` lies on the surface of the first object; false for the second.
   /// Triangle that contains `deep_point`: its index in the object whose surface contains this point.
   std::uint32_t deep_triangle = 0;
   std::uint32_t surface_triangle = 0;  ///< Triangle of the other object that contains `surface_point`.

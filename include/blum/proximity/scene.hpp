@@ -51,7 +51,7 @@ struct Description<ObjectOptions> {
   };
 };
 
-/// Method that excludes pairs of primitives which cannot be in the result. All methods give the same results, to the
+/// Method that excludes pairs of primitives which cannot be in the result. All methods give the same results, byte for
 /// byte.
 enum class Culling : std::uint8_t {
   automatic,  ///< The method that is faster in all known cases: `bvh`.
@@ -159,22 +159,22 @@ class ProximityScene {
   /// Changes the name of an object in messages: see ObjectOptions::name.
   void rename(ObjectId object, std::string name);
 
-  /// Sets new positions of all vertices of an object. The object's transform is applied to these positions.
-  /// @throws InvalidMesh, also if the number of vertices differs. Cancelled; after that, the object must be updated
-  /// again before it is used.
+  /// Sets new positions of all vertices of an object. The positions are those before the object's transform.
+  /// @throws InvalidMesh, also if the number of vertices differs. Cancelled; a cancelled object must be updated again
+  /// before it is used.
   /// Cost: a fifth of that of add().
   void update(ObjectId object, std::span<const Vec3d> vertices, const Context& context = {});
   /// Replaces the transform of an object.
   /// @throws InvalidOption if the new transform is not rigid to 1e-9, is a reflection, or has a translation beyond
   /// 1e70.
   void update(ObjectId object, const RigidTransform& place);
-  /// Replaces the mesh of an object. Its transform and options stay.
+  /// Replaces the mesh of an object. The transform and the options of the object do not change.
   /// @throws as add().
   void update(ObjectId object, const MeshView& mesh, const Context& context = {});
 
   /// Excludes a pair of objects from comparisons, whatever their layers. If `first` and `second` are equal, the object
   /// is no longer compared with itself.
-  /// @param is_excluded  false: removes an earlier exclusion of this pair.
+  /// @param is_excluded false to remove an earlier exclusion of the pair.
   void exclude(ObjectId first, ObjectId second, bool is_excluded = true);
 
   /// Returns the number of objects that were added, including those that were removed.
@@ -223,17 +223,17 @@ class ProximityScene {
   [[nodiscard]] ProximityPairs closest_primitives(double max_distance = std::numeric_limits<double>::infinity(),
                                                   const Context& context = {}) const;
 
-  /// Returns all compared pairs of primitives that are at most `distance` apart. Each pair occurs once. The smaller
-  /// object is first; within one object, the smaller primitive is first. Pairs are sorted by ascending (first object,
-  /// first primitive, second object, second primitive).
+  /// Returns all compared pairs of primitives that are at most `distance` apart. Each pair occurs once. In a pair, the
+  /// object with the smaller number is first; within one object, the primitive with the smaller number is first. Pairs
+  /// are sorted by ascending (first object, first primitive, second object, second primitive).
   /// @param distance  mesh units, not negative.
   /// @throws OutOfMemory if more than 2^26 pairs are found.
   [[nodiscard]] ProximityPairs closer_than(double distance, const Context& context = {}) const;
 
-  /// Returns all compared pairs of primitives that have a point in common, as closer_than(0). Within one object, it
-  /// also returns pairs of triangles that have more in common than a shared corner or edge. These are triangles that
-  /// are folded onto each other, or cross away from the shared corner or edge. The point that is reported for a pair
-  /// with a common vertex is a shared corner.
+  /// Returns all compared pairs of primitives that have a point in common, as closer_than(0). Within one object, the
+  /// result also contains pairs of triangles that have more in common than a shared corner or edge. Such triangles are
+  /// folded onto each other, or cross away from the shared corner or edge. The point that is reported for a pair with a
+  /// common vertex is a shared corner.
   [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
 
   /// Returns all collisions of compared objects while objects move: pairs of a vertex and a face, and pairs of two
@@ -247,8 +247,8 @@ class ProximityScene {
                                            const Context& context = {}) const;
 
   /// Returns the first contact of objects that move: the earliest of all pairs that continuous() returns. If several
-  /// pairs have this time, returns the pair that continuous() lists first. The function does not search for the later
-  /// pairs.
+  /// pairs meet at the earliest time, returns the pair that continuous() lists first. The function does not search for
+  /// the later pairs.
   /// @param motions  at most one for each object.
   /// @return nullopt if nothing meets.
   /// @throws InvalidMesh for vertices that update() rejects; InvalidOption.
@@ -264,7 +264,8 @@ class ProximityScene {
   /// solid's surface. If faces of both solids coincide, the order of the objects changes the depths by up to a factor
   /// of 2 (docs/theory/proximity.md). If both objects are the same, returns the connected regions in which the winding
   /// number of the object's surface is 2 or more. The shells of an object may cross or touch. One shell may also lie in
-  /// another and face the same way. In these cases, the object is the union of the solids that its shells bound.
+  /// another and face the same way. If shells cross, touch or lie in each other in this way, the object is the union of
+  /// the solids that its shells bound.
   /// @throws InvalidMesh if an object is not closed, or faces inwards. InvalidMesh is also thrown if an object is
   /// further from the origin than about 1e9 times its size, because rounding then hides the object's shape.
   /// InvalidOption; Cancelled.
@@ -276,7 +277,7 @@ class ProximityScene {
                                          const Context& context = {}) const;
 
   /// Returns the overlaps of all compared pairs of objects, by ascending (first, second) object. The parts of each pair
-  /// are those of penetration(), to the byte.
+  /// equal those of penetration(), byte for byte.
   /// @throws as penetration(), also for objects of pairs whose boxes are apart.
   /// Cost: that of penetration() for each pair whose boxes meet. For the objects of other pairs, the cost is only 0.3
   /// microseconds per triangle, once for each object. Progress counts the pairs.
@@ -300,8 +301,8 @@ class ProximityScene {
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
   /// Returns the signed distances of all compared pairs of objects. For objects that are apart or touch, the result
-  /// contains the pair of separation(). For objects that overlap, it contains the deepest_pair() of the deepest part,
-  /// with a negative distance. An object compared with itself is left out if every two of its primitives share a
+  /// contains the pair of separation(). For objects that overlap, the result contains the deepest_pair() of the deepest
+  /// part, with a negative distance. An object compared with itself is left out if every two of its primitives share a
   /// vertex.
   /// @throws as signed_separation().
   /// Cost: that of separation(), plus that of penetration() for each pair whose boxes meet.
@@ -329,7 +330,7 @@ struct PairQuery {
 [[nodiscard]] std::span<const PairQuery> pair_queries();
 
 /// Calls the query with the given name.
-/// @throws InvalidOption if no query has the name; otherwise as the method.
+/// @throws InvalidOption if no query has the name; otherwise as the method of the query.
 [[nodiscard]] ProximityPairs ask_pairs(const ProximityScene& scene, std::string_view query,
                                        const PairQueryOptions& options = {}, const Context& context = {});
 

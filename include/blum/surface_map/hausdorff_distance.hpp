@@ -21,7 +21,7 @@ struct HausdorffOptions {
   /// the box around both meshes.
   std::optional<double> tolerance = {};
   /// Largest number of points of a mesh that the search stores: the mesh's vertices, and points added between them. If
-  /// more would be needed, the search stops with a wider interval. Each point takes up to 150 bytes. Values above
+  /// more points are needed, the search stops with a wider interval. Each point takes up to 150 bytes. Values above
   /// max_id_count are treated as max_id_count.
   std::size_t max_points = 20'000'000;
 };
@@ -35,7 +35,7 @@ struct Description<HausdorffOptions> {
              "mesh units; default: 1/10,000 of the diagonal of the box around both meshes",
              "largest width of the interval", Range::positive()},
       Member{"max_points", &HausdorffOptions::max_points, "",
-             "largest number of examined points per mesh; when it is reached, the search stops with a wider interval",
+             "largest number of examined points per mesh; if more are needed, the search stops with a wider interval",
              Range::between(1, 1e15)},
   };
 };
@@ -63,7 +63,8 @@ struct Description<DirectedHausdorff> {
       Member{"lower", &DirectedHausdorff::lower, "mesh units", "lower bound of the distance"},
       Member{"upper", &DirectedHausdorff::upper, "mesh units", "upper bound of the distance"},
       Member{"points", &DirectedHausdorff::points, "mesh units",
-             "point of the mesh that is at least 'lower' away, and the closest point of the other mesh"},
+             "point of the mesh whose distance from the other mesh is at least 'lower', and its closest point on the "
+             "other mesh"},
       Member{"primitive", &DirectedHausdorff::primitive, "",
              "index of the primitive of the mesh that contains the first point: triangles first, then segments, then "
              "points"},

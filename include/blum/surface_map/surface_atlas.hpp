@@ -31,10 +31,11 @@ struct SurfaceAtlas {
   std::uint32_t height = 0;  ///< texels
   /// Positions in the texture of the corners of each triangle.
   std::vector<std::array<TexturePlace, 3>> corners;
-  /// For each texel: the triangle that it belongs to, or none(). Texels are listed in rows from the top, x fastest. A
-  /// texel belongs to a triangle if a lookup at a point of the triangle reads it, as the nearest texel or bilinearly.
-  /// If lookups in several triangles read a texel, it belongs to the triangle in which its middle lies deepest. If the
-  /// middle lies in none of these triangles, the texel belongs to the closest triangle.
+  /// For each texel: the triangle that the texel belongs to, or none(). Texels are listed in rows from the top, x
+  /// fastest. A texel belongs to a triangle if a lookup at a point of the triangle reads it, as the nearest texel or
+  /// bilinearly. If lookups in several triangles read a texel, it belongs to the triangle in which the texel's middle
+  /// lies deepest. If the middle lies in no triangle that reads the texel, the texel belongs to the closest of these
+  /// triangles.
   Buffer<TriangleId> triangle;
   /// True if lookups in two different triangles never read the same texel. Always false for atlases from given texture
   /// coordinates.
@@ -95,11 +96,11 @@ struct SurfaceTexels {
                                            const Context& context = {});
 
 /// Returns an upper bound for each triangle, mesh units. A lookup at a point of the triangle reads one or four texels.
-/// The bound applies to the distance from this point to the surface points of the texels. For lookups of the nearest
-/// texel, it bounds the distance to the texel's point. For bilinear lookups, it bounds the weighted mean of the
-/// distances to the points of the four nearest texels. The bound is half the diagonal of a texel, times the largest
-/// stretch from chart to triangle. The bound is larger if some of the texels belong to other triangles, and infinite if
-/// the chart has no area.
+/// The bound applies to the distance from the point of the lookup to the surface points of the texels. For lookups of
+/// the nearest texel, the bound applies to the distance to the texel's point. For bilinear lookups, the bound applies
+/// to the weighted mean of the distances to the points of the four nearest texels. The bound is half the diagonal of a
+/// texel, times the largest stretch from chart to triangle. The bound is larger if some of the texels belong to other
+/// triangles, and infinite if the chart has no area.
 /// @throws InvalidMesh if mesh and atlas have different counts of triangles.
 /// @throws Cancelled.
 [[nodiscard]] std::vector<double> texel_reaches(const MeshView& mesh, const SurfaceAtlas& atlas,

@@ -26,7 +26,7 @@ struct DeviationOptions {
   /// Largest number of pieces that are examined, 1 to 10^9. If more pieces are needed, the division stops with larger
   /// errors. Each triangle is at least one piece, even if the mesh has more triangles than this number. If the mesh has
   /// more triangles than a quarter of this number, the triangles are cut evenly. The cut gives about seven to fifteen
-  /// times this number of pieces. For each of them, only the distance of the centroid is computed.
+  /// times this number of pieces. For each piece of this cut, only the distance of the centroid is computed.
   std::size_t pieces = 100'000;
   /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside the other
   /// mesh.
@@ -44,11 +44,10 @@ struct Description<DeviationOptions> {
           "is smaller",
           "largest error of means and percentiles", Range::positive()},
       Member{"pieces", &DeviationOptions::pieces, "",
-             "largest number of pieces that are examined; when it is reached, errors stay above the largest error that "
-             "was asked for",
+             "largest number of pieces that are examined; if more are needed, errors stay above max_error",
              Range::between(1, 1e9)},
       Member{"sign", &DeviationOptions::sign, "",
-             "rule for the signs of means and percentiles: negative inside the other mesh"},
+             "rule for the signs of means and percentiles; distances are negative inside the other mesh"},
   };
 };
 
@@ -92,7 +91,7 @@ struct Description<SurfaceDeviation> {
       Member{"area", &SurfaceDeviation::area, "square mesh units", "area of the surface"},
       Member{"pieces", &SurfaceDeviation::pieces, "", "number of pieces into which the surface was divided"},
       Member{"sign_rule", &SurfaceDeviation::sign_rule, "", "rule that found the signs"},
-      Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "reason for this rule"},
+      Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "reason for the rule that found the signs"},
       Member{"warnings", &SurfaceDeviation::warnings, "", "warnings about the signs"},
   };
 };

@@ -45,7 +45,7 @@ struct Description<SurfaceQuantity> {
 };
 
 struct SurfaceMapOptions {
-  /// Side of a texel on the surface, > 0, mesh units. Unset: chosen so that the texture has about a million texels.
+  /// Side of a texel on the surface, > 0, mesh units. The default gives a texture of about a million texels.
   std::optional<double> texel = {};
   /// Rule for the sign of distances to another mesh. Signed distances are negative where the surface is inside the
   /// other mesh.
@@ -62,9 +62,9 @@ struct Description<SurfaceMapOptions> {
       Member{"texel", &SurfaceMapOptions::texel, "mesh units",
              "side of a texel on the surface; the default gives about a million texels", Range::positive()},
       Member{"sign", &SurfaceMapOptions::sign, "",
-             "rule for the sign of distances to other meshes: negative inside them"},
-      Member{"max_distance", &SurfaceMapOptions::max_distance, "mesh units", "largest distance that is searched",
-             Range::at_least(0)},
+             "rule for the sign of distances to another mesh; distances are negative inside the other mesh"},
+      Member{"max_distance", &SurfaceMapOptions::max_distance, "mesh units",
+             "largest distance at which closest points are searched", Range::at_least(0)},
   };
 };
 
@@ -85,10 +85,10 @@ struct SurfaceMap {
   Buffer<SiteId> site;
   /// For each triangle of the mesh: a bound on the errors of lookups, mesh units. At any point of the triangle, the
   /// exact distance differs from the result of a lookup by at most this bound. The bound holds for lookups of the
-  /// nearest texel and for bilinear lookups. The reason is that distances at two points differ by at most the distance
-  /// between the points. The list is empty for thickness, which may jump. If signs may jump (see
-  /// ClosestPointQuery::sign_may_jump()), the bound includes the jumps and is large. The bound does not hold for
-  /// lookups that read a texel for which nothing lies within max_distance.
+  /// nearest texel and for bilinear lookups. The bound exists because distances at two points differ by at most the
+  /// distance between the points. The list is empty for thickness, because thickness may jump between two points. If
+  /// signs may jump (see ClosestPointQuery::sign_may_jump()), the bound includes the jumps and is large. The bound does
+  /// not hold for lookups that read a texel for which nothing lies within max_distance.
   std::vector<float> error;
 
   /// Exact distance or thickness at each vertex of the mesh; NaN for vertices of no triangle. For quantities other than
@@ -103,7 +103,7 @@ struct SurfaceMap {
   std::vector<FaceSummary> faces;  ///< for each triangle of the mesh
 
   SignRule sign_rule = SignRule::none;
-  std::string sign_reason;        ///< Reason for this rule, one sentence.
+  std::string sign_reason;        ///< Reason for the sign rule, one sentence.
   std::vector<PhaseTime> phases;  ///< Time of each phase.
   /// For distances, the warnings about signs (ClosestPointQuery::warnings()). For thickness, thickness_warnings(). The
   /// last warning is WarningCode::nothing_found if no texel has a value. Empty for maps that were read from files.
@@ -154,7 +154,7 @@ class SurfaceMapper {
   /// @throws InvalidMesh for another number of vertices, or for a position that is not finite.
   void move_target(std::span<const Vec3d> vertices);
   void move_other(std::span<const Vec3d> vertices, const Context& context = {});
-  /// Replaces the other mesh.
+  /// Replaces the mesh to which distances are measured.
   void replace_other(const MeshView& other, const Context& context = {});
 
   /// Returns the map of the meshes as they are now.

@@ -51,7 +51,7 @@ struct Description<SurfaceMapStatistics> {
 ///
 /// @param mesh  mesh for which the map was computed.
 /// @return      zeros, except for `area`, if no texel with a value belongs to a triangle with an area.
-/// @throws InvalidMesh if the map cannot belong to the mesh, for example because it has another number of triangles.
+/// @throws InvalidMesh if the map cannot belong to the mesh, for example because the number of triangles differs.
 /// @throws OutOfMemory.
 /// Cost: about 0.4 us for each texel.
 [[nodiscard]] SurfaceMapStatistics surface_map_statistics(const MeshView& mesh, const SurfaceMap& map);

@@ -26,12 +26,12 @@ enum class ThicknessKind : std::uint8_t {
   /// through no other triangle, because the mesh is open or faces inwards.
   ray,
   /// Let m be the normal, at the point, of the smooth surface that the mesh approximates. The thickness is the diameter
-  /// of the largest ball that touches the surface at the point from inside. Its centre lies in the direction opposite
-  /// to m. The ball contains no point of a triangle whose normal differs from m by `separation` or more. The normal m
-  /// is interpolated between normals at the three corners of the point's triangle. A corner's normal is the mean of the
-  /// normals of triangles at the corner, weighted by their angles. The mean includes only triangles whose normal
-  /// differs from the normal of the point's triangle by less than `separation`. The thickness is infinite if nothing
-  /// limits the ball.
+  /// of the largest ball that touches the surface at the point from inside. The centre of the ball lies in the
+  /// direction opposite to m. The ball contains no point of a triangle whose normal differs from m by `separation` or
+  /// more. The normal m is interpolated between normals at the three corners of the point's triangle. A corner's normal
+  /// is the mean of the normals of triangles at the corner, weighted by their angles. The mean includes only triangles
+  /// whose normal differs from the normal of the point's triangle by less than `separation`. The thickness is infinite
+  /// if nothing limits the ball.
   ball
 };
 
@@ -45,8 +45,8 @@ struct ThicknessOptions {
   ThicknessKind kind = ThicknessKind::ray;
   /// For balls: degrees, 0 to 180. A triangle does not limit a point's ball if its normal differs by less than this
   /// angle from the surface normal at the point. Triangles with a smaller difference are treated as parts of the same
-  /// smooth surface. With 0, the ball touches the triangle itself, and lies inside the polyhedron. The ball then
-  /// shrinks to nothing at each convex edge, also at edges that only approximate a smooth surface.
+  /// smooth surface. With 0, the ball touches the triangle itself, and lies inside the polyhedron. With 0, the ball
+  /// also shrinks to nothing at each convex edge, even at edges that only approximate a smooth surface.
   double separation = 30;
 };
 
@@ -59,8 +59,8 @@ struct Description<ThicknessOptions> {
              "'ray': distance straight inwards to the far side; 'ball': diameter of the largest ball inside the solid "
              "that touches the surface at the point"},
       Member{"separation", &ThicknessOptions::separation, "degrees",
-             "for balls: triangles are ignored if their normals differ from that of the point's triangle by less than "
-             "this",
+             "for balls: triangles are ignored if their normal differs from the surface normal at the point by less "
+             "than this angle",
              Range::between(0, 180)},
   };
 };
@@ -99,8 +99,9 @@ struct Thickness {
 [[nodiscard]] SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map = {},
                                        const ThicknessOptions& options = {}, const Context& context = {});
 
-/// Returns a warning if the thickness is not meaningful everywhere on a mesh. The mesh is either open
-/// (WarningCode::open_mesh), or does not face outwards everywhere (WarningCode::facing). Returns at most one warning.
+/// Returns a warning if the thickness is not meaningful everywhere on a mesh. The warning states that the mesh is open
+/// (WarningCode::open_mesh), or that it does not face outwards everywhere (WarningCode::facing). Returns at most one
+/// warning.
 /// @param solid  must pass validate(solid).
 /// Cost: that of orientation() and a table of sites.
 [[nodiscard]] std::vector<Warning> thickness_warnings(const MeshView& solid, const Context& context = {});

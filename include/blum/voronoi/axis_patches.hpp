@@ -40,8 +40,8 @@ void add_axis_patch_columns(Complex& axis, const MeshView& mesh, std::span<const
 
 /// Adds the columns for an axis of a solid. The sites and patches are those of the solid's surface, as in
 /// voronoi_complex() of this solid.
-/// @throws InvalidOption if an option is out of range; as check_manifold(), which rejects solids of images; as the
-/// function above.
+/// @throws InvalidOption if an option is out of range; as check_manifold(), which rejects solids of images; as
+/// add_axis_patch_columns() of a mesh.
 void add_axis_patch_columns(Complex& axis, const Solid& solid, const VoronoiPatchOptions& options = {},
                             const Context& context = {});
 

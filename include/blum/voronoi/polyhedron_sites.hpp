@@ -19,8 +19,8 @@ enum class EdgeTurn : std::uint8_t {
   reflex,  ///< Above 180 degrees.
 };
 
-/// Faces, reflex edges and reflex vertices of a polyhedron, which are the sites of the Voronoi diagram inside it. No
-/// other part of the surface is closest to a point inside. For example, near a convex edge, a face at the edge is
+/// Faces, reflex edges and reflex vertices of a polyhedron, which are the sites of the Voronoi diagram inside it. Only
+/// these sites can be closest to a point inside the polyhedron. For example, near a convex edge, a face at the edge is
 /// closer than the edge.
 struct PolyhedronSites {
   /// For each triangle, the number of its face. Triangles in one plane that are connected through edges form one face.
@@ -28,23 +28,24 @@ struct PolyhedronSites {
   std::vector<std::uint32_t> face_of;
   std::size_t face_count = 0;
   std::vector<EdgeTurn> turn;  ///< Kind of each edge of the SiteTable.
-  /// The two triangles of each edge of the SiteTable. The first one traverses the edge from its smaller to its larger
-  /// vertex.
+  /// The two triangles of each edge of the SiteTable. The first triangle traverses the edge from its smaller to its
+  /// larger vertex.
   std::vector<std::array<std::uint32_t, 2>> triangles_of;
   std::vector<std::uint32_t> reflex_edges;  ///< Edges of the SiteTable, ascending.
-  /// Vertices, ascending: each is the closest point of the surface to all points of a cone inside the solid, near the
-  /// vertex.
+  /// Vertices, ascending. Near each of them, the solid contains a cone of points to which the vertex is the closest
+  /// point of the surface.
   std::vector<std::uint32_t> reflex_vertices;
 };
 
 /// Finds the sites of a polyhedron, exactly for the given triangles.
 ///
-/// Let v be a vertex with edges to w_1, ..., w_n. Only the surface near v is considered here. Its closest point to a
-/// point q is v if (q - v) . (w_i - v) <= 0 for all i. All such points q form the dual cone of the edges. If the cone
-/// has an interior, it meets the surface near v in v alone. So the part of the cone near v lies either inside or
-/// outside the solid. Each face of the cone belongs to an edge at v. All these edges are reflex if the cone lies
-/// inside, and convex if it lies outside. To compute the cone, space is cut by the half-spaces of the edges, one after
-/// the other. Each decision uses exact signs of determinants of three edges. (Sud 2006, 5.3: sites of a polyhedron.)
+/// Let v be a vertex with edges to w_1, ..., w_n. Only the surface near v is considered here. The point of this surface
+/// that is closest to a point q is v if (q - v) . (w_i - v) <= 0 for all i. All such points q form the dual cone of the
+/// edges. If the dual cone has an interior, the cone meets the surface near v only in v. So the part of the cone near v
+/// lies either inside or outside the solid. Each face of the cone belongs to an edge at v. All edges of the cone's
+/// faces are reflex if the cone lies inside the solid, and convex if it lies outside. To compute the cone, space is cut
+/// by the half-spaces of the edges, one after the other. Each decision uses exact signs of determinants of three edges.
+/// (Sud 2006, 5.3: sites of a polyhedron.)
 ///
 /// @param mesh   closed, facing away from its inside, without crossings. Coordinates must be 0, or have magnitudes of
 ///               1e-80 to 1e100. Shells may touch in vertices.

@@ -39,13 +39,13 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  /// If all bodies are convex, planes are used. Otherwise, seams are traced. If tracing fails or takes long, cubes are
-  /// used. For bodies that are not convex, cubes are also used if a tolerance is given, because only cubes bound the
-  /// distance from the exact diagram.
+  /// If all bodies are convex, planes are used. If some body is not convex, seams are traced. If tracing fails or takes
+  /// long, cubes are used. For bodies that are not convex, cubes are also used if a tolerance is given, because only
+  /// cubes bound the distance from the exact diagram.
   automatic,
   cubes,  ///< Cubes of an octree, each with a proof of its topology.
-  /// If all bodies are convex, planes are used. Otherwise, seams are traced, which may take minutes. If tracing fails,
-  /// cubes are used.
+  /// If all bodies are convex, planes are used. If some body is not convex, seams are traced, which may take minutes.
+  /// If tracing fails, cubes are used.
   traced,
 };
 
@@ -64,16 +64,17 @@ struct VoronoiOptions {
   /// Planes and traces: triangles form one face if their corners lie within this distance of one plane, >= 0, mesh
   /// units. For traces, twice this distance is allowed. Junctions and seams of planes within 8 times this distance are
   /// joined. With 0, the mesh is used as given. Default: 16 times the rounding error of the largest coordinate. The
-  /// number of binary digits of the coordinates shows how they were rounded. For up to 20 digits, the error is 0. For
-  /// 21 to 24 digits, it is that of single precision. For more digits, it is that of double precision. Cubes: ignored.
+  /// number of binary digits of the coordinates shows how they were rounded. For up to 20 digits, the rounding error is
+  /// 0. For 21 to 24 digits, the error is that of single precision. For more digits, the error is that of double
+  /// precision. Cubes: ignored.
   std::optional<double> flatness = {};
   /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
   /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Edges of traced medial axes are
   /// at most about as long as this limit. Planes: ignored.
   int resolution = 16;
-  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With this
-  /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of this
-  /// tolerance.
+  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. If a
+  /// tolerance is given, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of
+  /// this tolerance.
   std::optional<double> tolerance = {};
   /// The options below apply only if cubes are used. To use cubes, set `method` or `tolerance`.
   /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
@@ -95,8 +96,8 @@ struct Description<VoronoiOptions> {
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
       Member{"method", &VoronoiOptions::method, "",
-             "auto: planes if all bodies are convex, otherwise traced seams, cubes if these fail or take long; "
-             "cubes: always; traced: even if it takes minutes"},
+             "auto: planes for convex bodies, otherwise traced seams, or cubes if tracing fails or takes long; cubes: "
+             "always cubes; traced: tracing may take minutes"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "planes and traces: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
@@ -107,12 +108,13 @@ struct Description<VoronoiOptions> {
       Member{"tolerance", &VoronoiOptions::tolerance, "mesh units",
              "largest distance between the complex and the exact walls", Range::positive()},
       Member{"depth", &VoronoiOptions::depth, "", "largest number of splits of a cube", Range::between(1, 24)},
-      Member{"grids", &VoronoiOptions::grids, "",
-             "largest number of grid positions that are tried: if few cubes fail, another position may have none that "
-             "fails",
-             Range::between(1, 100)},
+      Member{
+          "grids", &VoronoiOptions::grids, "",
+          "largest number of grid positions that are tried: if few cubes fail, all cubes may pass at another position",
+          Range::between(1, 100)},
       Member{"max_cubes", &VoronoiOptions::max_cubes, "",
-             "largest number of cubes, including split ones: about 10 kB each", Range::between(1000, 100'000'000)},
+             "largest number of cubes, including split cubes; each takes about 10 kB",
+             Range::between(1000, 100'000'000)},
   };
 };
 
@@ -120,8 +122,8 @@ struct Description<VoronoiOptions> {
 enum class VoronoiObstacle : std::uint8_t {
   none,
   square,        ///< The border of a square of the cube does not determine the diagram in the square.
-  tunnel,        ///< The region of a site passes through the cube, or may do so.
-  enclosed,      ///< The region of a site lies wholly inside the cube, or may do so.
+  tunnel,        ///< The region of a site passes through the cube, or possibly passes through it.
+  enclosed,      ///< The region of a site lies wholly inside the cube, or possibly lies inside it.
   face_hole,     ///< A hole of a face lies in the cube, or next to it.
   handle,        ///< A component of the solid in the cube has a tunnel, or more than one boundary component.
   joins,         ///< It is unknown which walls on the cube's boundary are connected inside the cube.
@@ -203,8 +205,9 @@ struct VoronoiReport {
   bool exact = false;
   double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
   double joined = 0;    ///< If exact or traced: junctions and seams within this distance are joined, mesh units.
-  /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second,
-  /// smaller one. Reflex edges and vertices inside a joined face are not sites, so they have no regions.
+  /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face of a pair was joined to the
+  /// second face, whose number is smaller. Reflex edges and vertices inside a joined face are not sites, so they have
+  /// no regions.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
   /// True if the seams were traced (VoronoiMethod::traced). As far as checks show, the sheets, seams and junctions are
   /// those of the diagram, except for details smaller than `joined`. All sheets are closed, and the complex has the
@@ -212,7 +215,7 @@ struct VoronoiReport {
   bool traced = false;
   /// If traced: bound on the error of the sites of walls with two footprints, mesh units. The distance of a point of a
   /// wall from the wall's sites exceeds its distance from the surface by at most this. A wall of the exact diagram that
-  /// the complex lacks cannot change distances by more.
+  /// the complex lacks cannot change distances by more than `label_error`.
   double label_error = 0;
   /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
   /// between vertices, mesh units.
@@ -241,9 +244,9 @@ struct VoronoiReport {
   BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};     ///< Betti numbers of the complex.
   /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
-  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets. If exact,
-  /// the bound includes rounding and joined junctions. The exact diagram is then that of the planes, within `flatness`
-  /// of the corners. If traced, the bound is unknown, and the value is 0.
+  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex, or this part of the diagram,
+  /// meets. If exact, the bound includes rounding and joined junctions. For exact complexes, the exact diagram is that
+  /// of the planes, which are within `flatness` of the corners. If traced, the bound is unknown, and the value is 0.
   double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
@@ -275,7 +278,7 @@ struct Description<VoronoiReport> {
   static constexpr std::string_view doc = "Counts of a Voronoi complex, and the result of its certification";
   static constexpr std::tuple members{
       Member{"certified", &VoronoiReport::certified, "",
-             "true if every cube passes and the Betti numbers are as expected: then the homology is proven"},
+             "true if every cube passes and the Betti numbers are as expected, which proves the homology"},
       Member{"exact", &VoronoiReport::exact, "",
              "true if each sheet, seam and junction is that of the exact diagram: all bodies are convex"},
       Member{"flatness", &VoronoiReport::flatness, "mesh units",
@@ -283,7 +286,7 @@ struct Description<VoronoiReport> {
       Member{"joined", &VoronoiReport::joined, "mesh units",
              "if exact or traced: junctions and seams within this distance are joined"},
       Member{"joined_faces", &VoronoiReport::joined_faces, "",
-             "pairs of faces: the first one was joined to the second one, since rounding bends them"},
+             "pairs of faces: the first face was joined to the second face, because rounding bends them"},
       Member{"traced", &VoronoiReport::traced, "",
              "true if the seams were traced: sheets, seams and junctions are those of the diagram within rounding"},
       Member{"label_error", &VoronoiReport::label_error, "mesh units",
@@ -310,11 +313,12 @@ struct Description<VoronoiReport> {
              "if certified: upper bound on the distance between the complex and the requested part of the exact "
              "diagram"},
       Member{"faces", &VoronoiReport::faces, "",
-             "faces among the sites: coplanar triangles that share edges count as one face"},
+             "faces among the sites: coplanar triangles that share edges form one face"},
       Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "reflex edges among the sites"},
       Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "reflex vertices among the sites"},
       Member{"thin_vertices", &VoronoiReport::thin_vertices, "",
-             "reflex vertices whose dual cones are thinner than 1e-3 radians: their regions count as part of walls"},
+             "reflex vertices whose dual cones are thinner than 1e-3 radians: the complex represents their regions as "
+             "part of walls"},
       Member{"grids", &VoronoiReport::grids, "", "grid positions that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "cubes that meet the solid and are not split"},
       Member{"squares", &VoronoiReport::squares, "", "squares between cubes; a split square is counted as its parts"},
@@ -355,7 +359,7 @@ struct VoronoiComplex {
   ///
   /// Sites in site_a and site_b are numbered as in voronoi_sites(): first faces, in the order of their smallest
   /// triangles, then reflex edges, then reflex vertices. If faces were joined (VoronoiReport::joined_faces), the
-  /// smallest number stands for all.
+  /// smallest number is used for all of them.
   ///
   /// If VoronoiReport::exact or VoronoiReport::traced, vertices also have the column `junction` (int32): 1 at a
   /// junction, 0 inside a seam or sheet.
@@ -369,12 +373,12 @@ struct VoronoiComplex {
 /// If all bodies are convex, the diagram consists of planar polygons. The distance from the border is the least of the
 /// distances from the faces' planes, so its graph bounds a convex polytope in four dimensions. The facets, ridges,
 /// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which of them
-/// exist. Sheets are divided into triangles. Some sheets get one further vertex in the middle for this.
+/// exist. Sheets are divided into triangles. Some sheets get one further vertex in the middle for this division.
 /// (docs/theory/voronoi.md, "Convex solids".)
 ///
-/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between them are divided
-/// into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the solid is
-/// divided into cubes:
+/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between traced seams are
+/// divided into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the
+/// solid is divided into cubes:
 ///
 /// Let K be the union of the surface and the walls between regions of different sites. An octree in generic position
 /// cuts space into cubes. The closest sites along the edges of cubes follow from the order of roots, or from exact
@@ -389,8 +393,9 @@ struct VoronoiComplex {
 /// If VoronoiReport::certified is false, parts of the complex may be missing or wrong.
 ///
 /// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
-/// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
-/// of the mesh. Cubes use triangles as given, so a face that rounding has bent becomes several sites.
+/// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No coordinate may have a magnitude above
+/// 1e8 times the size of the mesh. Cubes use triangles as given, so a face that rounding has bent becomes several
+/// sites.
 /// @throws InvalidMesh if the solid does not meet these conditions; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
 /// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000

@@ -18,7 +18,7 @@ namespace blum {
 
 /// Connected part of the border between two regions.
 struct VoronoiWall {
-  std::int32_t site_a = 0;           ///< Site of the region on one side: the smaller one.
+  std::int32_t site_a = 0;           ///< Site of the region on one side: the smaller site.
   std::int32_t site_b = 0;           ///< Site of the region on the other side.
   double area = 0;                   ///< Square mesh units.
   std::vector<std::uint32_t> seams;  ///< Indices of the seams along the wall's border, ascending.
@@ -31,8 +31,8 @@ struct Description<VoronoiWall> {
   static constexpr std::tuple members{
       Member{"site_a", &VoronoiWall::site_a, "", "site of the region on one side: the smaller site"},
       Member{"site_b", &VoronoiWall::site_b, "", "site of the region on the other side"},
-      Member{"area", &VoronoiWall::area, "square mesh units", "area of its triangles"},
-      Member{"seams", &VoronoiWall::seams, "", "seams along its border: indices into the list of seams"},
+      Member{"area", &VoronoiWall::area, "square mesh units", "area of the wall's triangles"},
+      Member{"seams", &VoronoiWall::seams, "", "seams along the wall's border: indices into the list of seams"},
   };
 };
 
@@ -52,7 +52,7 @@ struct Description<VoronoiSeam> {
   static constexpr std::string_view doc = "Chain of edges along which regions of three or more sites meet";
   static constexpr std::tuple members{
       Member{"sites", &VoronoiSeam::sites, "", "sites of the regions around it"},
-      Member{"length", &VoronoiSeam::length, "mesh units", "length of its edges"},
+      Member{"length", &VoronoiSeam::length, "mesh units", "length of the seam's edges"},
       Member{"walls", &VoronoiSeam::walls, "", "walls that meet along the seam: indices into the list of walls"},
       Member{"junctions", &VoronoiSeam::junctions, "",
              "junctions at the ends of the seam: indices into the list of junctions"},
@@ -61,9 +61,9 @@ struct Description<VoronoiSeam> {
 
 /// Point in which several seams meet, or in which one seam ends.
 struct VoronoiJunction {
-  std::uint32_t vertex = 0;  ///< Index of its vertex in the complex.
-  /// Position of the vertex, mesh units. Its error is at most VoronoiReport::hausdorff_bound. If the diagram is traced,
-  /// its error is about VoronoiReport::joined.
+  std::uint32_t vertex = 0;  ///< Index of the junction's vertex in the complex.
+  /// Position of the vertex, mesh units. The error of the position is at most VoronoiReport::hausdorff_bound. If the
+  /// diagram is traced, the error is about VoronoiReport::joined.
   Vec3d position;
   std::vector<std::int32_t> sites;   ///< Sites of the regions around the junction, ascending.
   std::vector<std::uint32_t> seams;  ///< Indices of the seams that end at the junction, ascending.
@@ -76,14 +76,15 @@ struct Description<VoronoiJunction> {
   static constexpr std::tuple members{
       Member{"vertex", &VoronoiJunction::vertex, "", "vertex of the complex"},
       Member{"position", &VoronoiJunction::position, "mesh units",
-             "position of that vertex; its error is at most hausdorff_bound, or about joined if traced"},
+             "position of the vertex, with an error of at most hausdorff_bound, or about joined if traced"},
       Member{"sites", &VoronoiJunction::sites, "", "sites of the regions around it"},
-      Member{"seams", &VoronoiJunction::seams, "", "seams that begin or end there: indices into the list of seams"},
+      Member{"seams", &VoronoiJunction::seams, "",
+             "seams that begin or end at the junction: indices into the list of seams"},
   };
 };
 
-/// Voronoi diagram as a graph of regions, walls, seams and junctions. Indices of walls, seams and junctions are
-/// positions in the lists below. In a graph of patches, `patches` is not empty. The sites of regions, walls, seams and
+/// Voronoi diagram as a graph of regions, walls, seams and junctions. Indices of walls, seams and junctions refer to
+/// the lists of the graph. In a graph of patches, `patches` is not empty. The sites of regions, walls, seams and
 /// junctions are then indices of patches in this list.
 struct VoronoiGraph {
   std::vector<VoronoiRegion> regions;      ///< By ascending site. Empty if the complex does not contain the surface.
@@ -122,8 +123,8 @@ struct Description<VoronoiGraph> {
 /// Returns the graph of a diagram whose sites are patches: all sites of a patch are treated as one site. Walls between
 /// two sites of one patch are left out, even where distant parts of the patch face each other. Adjacent walls between
 /// different pairs of sites are joined if their pairs of patches are equal. A seam is left out if only two patches meet
-/// along it. A junction is left out if one seam passes it, and no further patch meets it. A closed seam may remain
-/// without a junction.
+/// along it. A junction is left out if one seam passes through it, and no further patch meets it. A closed seam may
+/// remain without a junction.
 /// @param patches  result of voronoi_patches() for the sites of the complex, or another division of these sites.
 /// @throws InvalidOption also if a site of the complex belongs to no patch, or to two.
 [[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, std::span<const VoronoiPatch> patches,

@@ -35,8 +35,8 @@ struct Description<VoronoiPatchOptions> {
       Member{"patch_angle", &VoronoiPatchOptions::patch_angle, "degrees",
              "largest bend at an edge between two faces of one patch", Range::between(0, 180)},
       Member{"patch_fit", &VoronoiPatchOptions::patch_fit, "mesh units",
-             "patches are planes, spheres, cylinders and cones: largest distance between a shape and its vertices; if "
-             "unset, bends alone decide",
+             "largest distance of vertices from the plane, sphere, cylinder or cone of their patch; default: no shapes "
+             "are fitted",
              Range::positive()},
   };
 };
@@ -62,7 +62,7 @@ struct Description<VoronoiPatch> {
       Member{"kind", &VoronoiPatch::kind, "", "face: faces; edge: reflex edges between patches; vertex: one vertex"},
       Member{"sites", &VoronoiPatch::sites, "", "sites of the patch, including reflex edges and vertices inside it"},
       Member{"shape", &VoronoiPatch::shape, "",
-             "plane, sphere, cylinder or cone that fits the faces, if it was asked for"},
+             "plane, sphere, cylinder or cone that fits the faces, if patch_fit is set"},
   };
 };
 

@@ -42,9 +42,11 @@ struct Description<VoronoiRegion> {
   static constexpr std::string_view doc = "Region of the points that are closest to a site";
   static constexpr std::tuple members{
       Member{"site", &VoronoiRegion::site, "", "site, numbered as site_a and site_b"},
-      Member{"volume", &VoronoiRegion::volume, "cubic mesh units", "volume enclosed by its walls and its surface"},
-      Member{"surface_area", &VoronoiRegion::surface_area, "square mesh units", "area of its part of the surface"},
-      Member{"neighbours", &VoronoiRegion::neighbours, "", "regions on the other side of its walls"},
+      Member{"volume", &VoronoiRegion::volume, "cubic mesh units",
+             "volume that the walls and the surface of the region enclose"},
+      Member{"surface_area", &VoronoiRegion::surface_area, "square mesh units",
+             "area of the region's part of the surface"},
+      Member{"neighbours", &VoronoiRegion::neighbours, "", "regions on the other side of the region's walls"},
   };
 };
 

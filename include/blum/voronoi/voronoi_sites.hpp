@@ -22,8 +22,8 @@ struct Description<SiteKind> {
                                      NamedValue{SiteKind::face, "face"}};
 };
 
-/// Face, reflex edge or reflex vertex of a polyhedron. A face lists its triangles in the mesh, an edge or vertex its
-/// vertices.
+/// Face, reflex edge or reflex vertex of a polyhedron. A face lists its triangles in the mesh. An edge or vertex lists
+/// its vertices.
 struct VoronoiSite {
   SiteKind kind = SiteKind::face;
   std::vector<std::uint32_t> triangles;  ///< For a face: its coplanar triangles, ascending. Otherwise empty.
@@ -52,7 +52,7 @@ struct Description<VoronoiSite> {
 
 /// Returns the sites of a result of voronoi_complex(). If faces were joined (VoronoiReport::joined_faces), the face
 /// with the smallest number has the triangles of all joined faces. The other joined faces have no triangles. Edges and
-/// vertices inside joined faces stay in the list, though they have no regions.
+/// vertices inside joined faces stay in the list, although they have no regions.
 /// @param report  of a complex of this mesh.
 /// @throws as polyhedron_sites(); InvalidOption if the report has faces that the mesh does not have.
 [[nodiscard]] std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const VoronoiReport& report,
