@@ -35,7 +35,7 @@ struct Column {
   [[nodiscard]] friend bool operator==(const Column&, const Column&) = default;
 };
 
-/// Columns with the same number of rows, in the order in which they were added. Their names are distinct.
+/// Columns with the same number of rows, in the order in which they were added. No two columns have the same name.
 class Columns {
  public:
   Columns() = default;
@@ -52,7 +52,7 @@ class Columns {
   /// rows().
   Column& add(Column column);
   /// Adds a column whose numbers are all `fill`.
-  /// @throws InvalidOption as above.
+  /// @throws InvalidOption under the same conditions as add(Column).
   template <ColumnNumber T>
   std::span<T> add(std::string name, std::size_t components = 1, T fill = T{}) {
     return std::get<std::vector<T>>(
@@ -61,16 +61,16 @@ class Columns {
   /// Removes a column. Returns true if it existed.
   bool erase(std::string_view name);
 
-  /// Returns a column; nullptr if none has this name.
+  /// Returns the column with the given name; nullptr if it does not exist.
   [[nodiscard]] const Column* find(std::string_view name) const;
   /// Returns the numbers of a column, row after row.
-  /// @throws InvalidOption if no column has this name, or if its type is not T or its number of components is not
-  /// `components`.
+  /// @throws InvalidOption if no column has this name, if the column's type is not T, or if it does not have
+  /// `components` numbers per row.
   template <ColumnNumber T>
   [[nodiscard]] std::span<const T> get(std::string_view name, std::size_t components = 1) const {
     return std::get<std::vector<T>>(columns_[place_of(name, components, type_of<T>)].values);
   }
-  /// As get(), but returns numbers that can be changed.
+  /// Does the same as get(), but returns numbers that the caller can change.
   template <ColumnNumber T>
   [[nodiscard]] std::span<T> edit(std::string_view name, std::size_t components = 1) {
     return std::get<std::vector<T>>(columns_[place_of(name, components, type_of<T>)].values);
@@ -95,7 +95,7 @@ class Columns {
                                                                          : 3;
 
   /// Returns the index of a column.
-  /// @throws InvalidOption as get().
+  /// @throws InvalidOption under the same conditions as get().
   [[nodiscard]] std::size_t place_of(std::string_view name, std::size_t components, std::size_t type) const;
 
   std::size_t rows_ = 0;

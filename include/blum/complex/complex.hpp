@@ -35,16 +35,16 @@ struct Complex {
   [[nodiscard]] ComplexView view() const { return {positions.size(), edges, triangles}; }
 };
 
-/// Returns the first problem of the edges and triangles of a complex in one sentence, or an empty string. The vertices
-/// of each edge and triangle must exist and be distinct.
+/// Returns one sentence about the first invalid edge or triangle of a complex, or an empty string if all are valid. The
+/// vertices of each edge and triangle must exist and be distinct.
 [[nodiscard]] std::string problem_of(const ComplexView& complex);
-/// Returns the first problem of a whole complex in one sentence, or an empty string. The conditions are those of
-/// problem_of(ComplexView). In addition, every position must be finite, and each column must have one row per vertex,
-/// edge or triangle.
+/// Returns one sentence about the first problem of a whole complex, or an empty string if the complex is valid. Edges
+/// and triangles must satisfy the conditions of problem_of(ComplexView). In addition, every position must be finite,
+/// and each column must have one row per vertex, edge or triangle.
 [[nodiscard]] std::string problem_of(const Complex& complex);
 
 /// Checks a complex.
-/// @throws InvalidMesh with the text of problem_of() if this text is not empty.
+/// @throws InvalidMesh if problem_of() returns a text; the message is this text.
 void validate(const Complex& complex);
 
 }  // namespace blum

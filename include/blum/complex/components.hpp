@@ -10,7 +10,7 @@
 
 namespace blum {
 
-/// Returns for each vertex the smallest vertex of its connected component. This vertex represents the component.
+/// Returns for each vertex the smallest vertex index in its connected component. This index identifies the component.
 /// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice.
 /// Cost: near-linear.
 [[nodiscard]] std::vector<std::uint32_t> components(const ComplexView& complex);

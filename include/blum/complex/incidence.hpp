@@ -16,14 +16,14 @@
 
 namespace blum {
 
-/// List of the edges of a complex, each once, and incidences of the complex's vertices, edges and triangles. The object
-/// contains copies, so it stays valid if the complex changes.
+/// Edges of a complex without duplicates, and the incidences of its vertices, edges and triangles. The object contains
+/// copies, so it stays valid if the complex changes.
 class Incidence {
  public:
   Incidence() = default;
   /// Computes the incidences of a complex.
-  /// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice. Also if
-  /// there are 2^32 or more listed edges and sides of triangles in total. Cancelled.
+  /// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice. It is
+  /// also thrown if there are 2^32 or more listed edges and sides of triangles in total. Cancelled.
   /// Cost: linear except for sorting the edges of each vertex; about 60 bytes per triangle.
   explicit Incidence(const ComplexView& complex, const Context& context = {});
 

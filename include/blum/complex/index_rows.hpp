@@ -14,7 +14,8 @@ namespace blum {
 class IndexRows {
  public:
   IndexRows() = default;
-  /// @param first  start of each row in `items`, and the end of the last row. Its size is the number of cells plus 1.
+  /// @param first  start of each row in `items`, and the end of the last row. The size of `first` is the number of
+  ///               cells plus 1.
   IndexRows(std::vector<std::size_t> first, std::vector<std::uint32_t> items)
       : first_(std::move(first)), items_(std::move(items)) {}
 
@@ -30,8 +31,8 @@ class IndexRows {
 
 namespace detail {
 
-/// Returns one row for each of `cell_count` cells. The row contains the indices of the things that use the cell,
-/// ascending. For example, the cells are vertices and the things are edges.
+/// Returns one row for each of `cell_count` cells. Row c contains the indices of the things that use cell c, in
+/// ascending order. For example, the cells are vertices, and the things are the edges between them.
 /// @param cells_of  cells_of(k) returns the cells that thing k uses, as a range.
 template <class CellsOf>
 [[nodiscard]] IndexRows rows_of(std::size_t thing_count, std::size_t cell_count, const CellsOf& cells_of) {

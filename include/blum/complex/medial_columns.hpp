@@ -35,37 +35,40 @@ struct Description<MedialRole> {
                                      NamedValue{MedialRole::junction, "junction"}};
 };
 
-/// Names of the columns that make a complex a medial axis. Vertices are centres of balls inside the solid. Edges are
-/// curves, rims and seams; inner edges of sheets are not listed. No name of a vertex column starts with vertex_, edge_
-/// or triangle_, because .npz files use these prefixes to distinguish kinds of columns.
+/// Names of the columns that a complex must have to represent a medial axis. Vertices are centres of balls inside the
+/// solid. Edges are curves, rims and seams; inner edges of sheets are not listed. No name of a vertex column starts
+/// with vertex_, edge_ or triangle_, because .npz files use these prefixes to distinguish kinds of columns.
 namespace medial_columns {
 
 /// Vertices, float64: exact distance to the surface, mesh units.
 inline constexpr std::string_view radius = "radius";
-/// Vertices, 3 x float64: the closest point of the surface, and the closest point of the other wall. If only one wall
-/// is near, both columns contain the same point.
+/// Vertices, 3 x float64: the two footprints. The first is the closest point of the surface. The second is the closest
+/// point of another part of the surface that is about equally close. If only one part is close, both columns contain
+/// the same point.
 inline constexpr std::array<std::string_view, 2> footprints{"footprint_0", "footprint_1"};
 /// Vertices, int32: the sites of the input mesh, or voxels of the input image, that contain the footprints; -1 if
 /// unknown.
 inline constexpr std::array<std::string_view, 2> sites{"site_0", "site_1"};
-/// Vertices, float64, degrees: the angle between the footprints, seen from the vertex. Edges and triangles, float32,
-/// degrees: their separation angle, or 0 if they exist only to preserve the homotopy type.
+/// Vertices, float64, degrees: the angle between the two footprints, seen from the vertex. Edges and triangles,
+/// float32, degrees: the separation angle of the edge or triangle; 0 if it exists only to preserve the homotopy type.
 inline constexpr std::string_view separation_angle = "separation_angle";
 /// Vertices and edges, int32: MedialRole. Edges have the roles rim, seam or curve.
 inline constexpr std::string_view role = "role";
 /// Triangles, int32: number of the sheet, from 0. The triangles of a sheet are connected through edges of exactly two
 /// triangles. Next to a seam, an edge that bends by 37 degrees or more does not connect its triangles. In the axis of a
-/// mesh, the number of a sheet depends on the faces on its two sides (see medial_axis()). In the axis of an image, they
-/// are numbered in the order of their first triangles.
+/// mesh, the number of a sheet depends on the faces on its two sides (see medial_axis()). In the axis of an image,
+/// sheets are numbered in the order of their first triangles.
 inline constexpr std::string_view sheet = "sheet";
 /// Additional columns of axes from Voronoi diagrams with patches (add_patch_columns()). Triangles, int32: the patches
-/// on the two sides, the smaller number first. Inside a patch, both are equal.
+/// on the two sides, the smaller number first. The two numbers are equal if both sides belong to the same patch.
 inline constexpr std::array<std::string_view, 2> patches{"patch_a", "patch_b"};
-/// Additional column of the same axes. Triangles, int32: number of the sheet of two patches, from 0; -1 inside a patch.
+/// Additional column of axes from Voronoi diagrams with patches. Triangles, int32: number of the sheet of two patches,
+/// from 0; -1 inside a patch.
 inline constexpr std::string_view patch_sheet = "patch_sheet";
 
 /// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: a
-/// vertex, edge or triangle exists if theta is less than this angle. Infinite if it exists at every theta.
+/// vertex, edge or triangle exists if theta is less than this angle. The angle is infinite if the vertex, edge or
+/// triangle exists at every theta.
 inline constexpr std::string_view until = "until";
 /// Edges, float32, degrees: an edge has its role if from <= theta < until. If the role of an edge changes with theta,
 /// the edge is listed once for each role. For example, an edge that is a seam, then a rim, then a curve is listed three
@@ -74,7 +77,7 @@ inline constexpr std::string_view from = "from";
 
 }  // namespace medial_columns
 
-/// Columns of a medial axis, for reading. Valid while the complex exists and does not change.
+/// Read-only view of the columns of a medial axis. The view is valid while the complex exists and does not change.
 struct MedialView {
   /// Finds the columns.
   /// @throws InvalidOption if a column is missing, or has a wrong type or number of rows.
@@ -105,7 +108,7 @@ struct MedialView {
   std::span<const std::int32_t> roles_, edge_roles_;
 };
 
-/// Additional columns of axes of all angles, for reading.
+/// Read-only view of the additional columns of axes of all angles.
 struct MedialLevels {
   /// Finds the columns.
   /// @throws InvalidOption as MedialView().
@@ -124,9 +127,9 @@ struct MedialLevels {
 /// vertices have the role sheet, and edges the role curve.
 void add_missing_medial_columns(Complex& complex);
 
-/// Axis with all columns of MedialView. This class is for functions that accept axes without some of the columns, and
-/// do not use the missing columns. The function get() returns the complex itself if no column is missing, else a copy
-/// after add_missing_medial_columns(). Valid while the complex exists.
+/// Axis with all columns of MedialView. Functions use this class if they accept axes with missing columns, and do not
+/// need these columns. If no column is missing, get() returns the complex itself. Otherwise, get() returns a copy to
+/// which add_missing_medial_columns() has added the columns. The object is valid while the complex exists.
 class CompleteAxis {
  public:
   explicit CompleteAxis(const Complex& axis);
@@ -138,15 +141,16 @@ class CompleteAxis {
   std::optional<Complex> copy_;
 };
 
-/// Returns the first reason why a complex is not a medial axis in one sentence, or an empty string if it is one.
+/// Returns one sentence with the first reason why a complex is not a medial axis. The string is empty if the complex is
+/// a medial axis.
 ///
 /// The complex must have no problem of problem_of(), at most 2^31 - 1 vertices, and all columns of MedialView. All
-/// numbers must be finite, radii 0 or more, and sites -1 or more. Roles must be values of MedialRole, for edges curve,
-/// rim or seam. Sheet numbers must be 0 or more, and less than the number of triangles.
+/// numbers must be finite, radii 0 or more, and sites -1 or more. Roles of vertices must be values of MedialRole. Roles
+/// of edges must be curve, rim or seam. Sheet numbers must be 0 or more, and less than the number of triangles.
 [[nodiscard]] std::string problem_of_medial(const Complex& axis);
-/// Returns the first problem of axes of all angles in one sentence, or an empty string. The complex must meet the
-/// conditions of problem_of_medial(), and have the columns of MedialLevels. The numbers in these columns may be
-/// infinite, but not NaN.
+/// Returns one sentence about the first problem of axes of all angles, or an empty string if they are valid. The
+/// complex must meet the conditions of problem_of_medial(), and have the columns of MedialLevels. The numbers in these
+/// columns may be infinite, but not NaN.
 [[nodiscard]] std::string problem_of_nested(const Complex& axes);
 
 /// Returns one more than the largest sheet number; 0 if there are no triangles.
@@ -166,7 +170,7 @@ struct Description<MedialCounts> {
   static constexpr std::tuple members{
       Member{"vertices", &MedialCounts::vertices, "", "points of the axis"},
       Member{"triangles", &MedialCounts::triangles, "", "triangles of its sheets"},
-      Member{"sheets", &MedialCounts::sheets, "", "parts of the surface that are connected without crossing a seam"},
+      Member{"sheets", &MedialCounts::sheets, "", "sets of triangles that are connected without crossing a seam"},
       Member{"curve_edges", &MedialCounts::curve_edges, "", "edges without triangles"},
       Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of exactly one triangle"},
       Member{"seam_edges", &MedialCounts::seam_edges, "", "edges of three or more triangles"},

@@ -14,7 +14,7 @@ namespace blum {
 struct AxisSample {
   Vec3d position;
   double radius = 0;         ///< Mesh units.
-  std::uint32_t vertex = 0;  ///< Vertex at this point, or a corner of the edge or triangle that contains it.
+  std::uint32_t vertex = 0;  ///< Vertex at this point, or a corner of the edge or triangle that contains the point.
 };
 
 /// Returns the balls of an axis as samples. Vertices come first, in their order. Points on listed edges longer than

@@ -16,7 +16,8 @@ namespace detail {
 void free_aligned(void* memory, std::size_t bytes) noexcept;
 }  // namespace detail
 
-/// Array of fixed size for grid values. It is aligned to 64 bytes, not initialised, and movable; clone() copies it.
+/// Movable array of fixed size for grid values. Its memory is aligned to 64 bytes and not initialised; clone() copies
+/// it.
 ///
 /// Writing a field to fresh 4 KiB pages takes longer than computing the field. So large buffers request huge pages, and
 /// their memory is not zeroed.
@@ -62,8 +63,8 @@ class Buffer {
   [[nodiscard]] std::span<const T> span() const { return {data_, size_}; }
 
  private:
-  /// Returns the size in bytes. If that overflows, returns the largest std::size_t, for which allocate_aligned() throws
-  /// OutOfMemory.
+  /// Returns the size in bytes. If the size in bytes overflows, returns the largest std::size_t, for which
+  /// allocate_aligned() throws OutOfMemory.
   static std::size_t checked_bytes(std::size_t size) {
     const std::size_t limit = static_cast<std::size_t>(-1);
     return size > limit / sizeof(T) ? limit : size * sizeof(T);

@@ -11,19 +11,20 @@ namespace blum {
 
 /// Settings for how a call runs. The default uses every core and reports no progress.
 struct Context {
-  /// Number of threads; 0 means one per core that this process may use. Results never depend on this number.
+  /// Number of threads; 0 means one per core that this process may use. Results never depend on the number of threads.
   int threads = 0;
 
-  /// Called repeatedly during long work, with the finished fraction of the current phase and the name of this phase. In
-  /// each phase, the fraction rises from 0 to 1. Calls never overlap, but may come from a worker thread. The function
-  /// must not throw.
+  /// Function that is called repeatedly during long work, with the name of the current phase and its finished fraction.
+  /// In each phase, the fraction rises from 0 to 1. Calls of this function never overlap, but may come from a worker
+  /// thread. The function must not throw.
   std::function<void(double fraction, std::string_view phase)> progress = {};
 
-  /// Asks running work to stop. After such a request, the call throws Cancelled within 200 ms.
+  /// Token through which the caller asks running work to stop. After a stop request, the running call throws Cancelled
+  /// within 200 ms.
   std::stop_token cancel = {};
 
   /// Device that computes fields (distance_field, FieldSolver, distance_transform). All other work runs on the CPU,
-  /// whatever this value is.
+  /// even if a CUDA device is set here.
   Device device = {};
 };
 

@@ -16,9 +16,9 @@
 
 namespace blum {
 
-/// Description of a struct or an enumeration. The specialisation stands next to the described type. The command-line
-/// options, the JSON output, and the options and results in Python are generated from this description, with types and
-/// documentation.
+/// Description of a struct or an enumeration. Each specialisation is declared next to the type that it describes. The
+/// command-line options, the JSON output, and the options and results in Python are generated from descriptions, with
+/// types and documentation.
 ///
 /// An enumeration:  static constexpr std::string_view name;
 ///                  static constexpr std::array values{NamedValue{value, "name"}, ...};
@@ -27,7 +27,7 @@ namespace blum {
 ///                  static constexpr std::tuple members{Member{...}, Fact{...}, ...};
 ///
 /// The description of a struct must list all members in their order. The function for_each_member() checks at compile
-/// time that none is missing.
+/// time that no member is missing.
 template <class T>
 struct Description;
 
@@ -54,9 +54,9 @@ struct Range {
 /// Member of a struct.
 template <class Struct, class Type>
 struct Member {
-  std::string_view name;  ///< name in Python and JSON; on the command line with dashes
+  std::string_view name;  ///< name in Python and JSON; on the command line, dashes replace its underscores
   Type Struct::* pointer;
-  std::string_view unit;               ///< for example "mesh units"; empty if it has none
+  std::string_view unit;               ///< for example "mesh units"; empty if the member has no unit
   std::string_view doc;                ///< one line, without a full stop
   Range range = {};                    ///< allowed range of a numeric option
   std::span<const Type> choices = {};  ///< allowed values of an enumeration; if empty, all values
@@ -72,7 +72,7 @@ Member(const char*, Type Struct::*, const char*, const char*, Range) -> Member<S
 template <class Struct, class Type, class Choices>
 Member(const char*, Type Struct::*, const char*, const char*, Range, const Choices&) -> Member<Struct, Type>;
 
-/// Value that a member function of a struct computes. Outputs show it like a member.
+/// Value that a member function of a struct computes. Outputs show this value like a member.
 template <class Struct, class Type>
 struct Fact {
   std::string_view name;
@@ -105,7 +105,7 @@ consteval TypeList<Left..., Right...> operator+(TypeList<Left...> /*left*/, Type
 template <class Entry>
 using StoredType = std::conditional_t<Entry::is_stored, TypeList<typename Entry::Value>, TypeList<>>;
 
-/// Returns true if a T can be initialised from values of these types, but not from one more value.
+/// Returns true if a T can be initialised from one value of each of these types, and from no additional value.
 template <class T, class... Types>
 consteval bool consists_of(TypeList<Types...> /*types*/) {
   return requires { T{std::declval<Types>()...}; } && !requires { T{std::declval<Types>()..., {}}; };
@@ -168,7 +168,9 @@ template <DescribedEnum Enum>
   detail::refuse_choice(what, text, names);
 }
 
-/// Returns the words as one text: "a, b and c", with `last` instead of "and". @param quote  is put around each word.
+/// Returns the words as one text, for example "a, b and c".
+/// @param last   word before the last item.
+/// @param quote  text that is put before and after each word.
 [[nodiscard]] std::string join_words(std::span<const std::string_view> words, std::string_view last = "and",
                                      std::string_view quote = {});
 

@@ -8,7 +8,8 @@
 
 namespace blum {
 
-/// Base of every exception that Blum throws. what() states the problem, its place and the remedy.
+/// Base of every exception that Blum throws. what() states the problem, the file, option or element that has the
+/// problem, and the remedy.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -68,7 +69,7 @@ class FormatError : public FileError {
   using FileError::FileError;
 };
 
-/// An axis that is not certified, although a certified one was requested. The text of what() lists all mismatches.
+/// An axis is not certified, although the caller requested a certified axis. The text of what() lists all mismatches.
 class NotCertified : public Error {
  public:
   /// @param mismatches  the reasons, one sentence each.  @param rest  text that follows the mismatches in what().

@@ -10,8 +10,8 @@ namespace blum {
 template <class Signature>
 class FunctionRef;
 
-/// Reference to a callable object, for the duration of a call. It never allocates. The object must outlive the
-/// reference.
+/// Reference to a callable object, for the duration of a call. FunctionRef never allocates memory. The callable object
+/// must outlive the reference.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:

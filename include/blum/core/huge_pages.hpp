@@ -6,8 +6,9 @@
 
 namespace blum::detail {
 
-/// Asks the system to use huge pages for memory that was not used yet. Such a page takes a single page fault instead of
-/// 512. Has no effect on blocks below 4 MB, or if the system has no huge pages.
+/// Asks the system to use huge pages for memory that has not been read or written yet. A huge page causes one page
+/// fault, instead of one for each of the 512 small pages that it replaces. Has no effect on blocks below 4 MB, or if
+/// the system has no huge pages.
 void request_huge_pages(void* memory, std::size_t bytes);
 
 /// Returns a list of `size` entries with their default values, in huge pages if it is large.

@@ -8,8 +8,8 @@
 
 namespace blum {
 
-/// Index of 32 bits. Each kind of object has its own type. The value none() stands for "no object". This type is used
-/// instead of std::optional, which would double the memory of large arrays. Files store none() as -1.
+/// Index of 32 bits. Each kind of object has its own type. The value none() stands for "no object". Id is used instead
+/// of std::optional, which would double the memory of large arrays. Files store none() as -1.
 template <class Tag>
 struct Id {
   std::uint32_t value = std::numeric_limits<std::uint32_t>::max();

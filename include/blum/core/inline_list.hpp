@@ -29,7 +29,7 @@ class InlineList {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] bool is_full() const { return size_ == most; }
-  /// Appends a value. @param value  is appended; the list must not be full.
+  /// Appends a value. The list must not be full.
   void push_back(const T& value) { std::construct_at(data() + size_++, value); }
   /// Appends a default-initialised value and returns a reference to it. The list must not be full.
   T& emplace_back() { return *std::construct_at(data() + size_++); }

@@ -23,8 +23,8 @@ struct Parameter {
 
 /// Returns the values of all parameters. Parameters that are not in `given` have their default values.
 /// @param owner  name of the generator, for messages.
-/// @throws InvalidOption if a parameter is unknown, out of range, or not a whole number although it must be. The
-/// message lists all parameters and ranges.
+/// @throws InvalidOption if a parameter is unknown or out of range, or if an integer parameter is not a whole number.
+/// The message lists all parameters and ranges.
 [[nodiscard]] ParameterValues complete_parameters(std::string_view owner, std::span<const Parameter> parameters,
                                                   const ParameterValues& given);
 

@@ -14,9 +14,9 @@
 namespace blum::detail {
 
 /// Calls run(part, context) once for each part, the largest part first. A part is large if its size exceeds the sum of
-/// all sizes, divided by the number of threads. Large parts run one after another, with the given context. The other
-/// parts run in parallel, each with a context that has one thread and reports no progress. If there is only one other
-/// part, it runs with the given context, too.
+/// all sizes, divided by the number of threads. Large parts run one after another, with the given context. The small
+/// parts run in parallel, each with a context that has one thread and reports no progress. If there is only one small
+/// part, it also runs with the given context.
 /// @param sizes  size of each part, proportional to its running time.
 /// @param phase  as for parallel_for(), for the parts that run in parallel.
 /// @throws Cancelled, and any exception of run().

@@ -7,9 +7,9 @@
 
 namespace blum {
 
-/// SplitMix64 generator (Steele, Lea, Flood 2014). The distributions of the standard library differ between
-/// implementations; the distributions of this class are the same everywhere. So generated shapes and tests are the same
-/// on every platform.
+/// SplitMix64 generator (Steele, Lea, Flood 2014). The distributions of this class are the same everywhere, while those
+/// of the standard library differ between implementations. So generated shapes and tests are the same on every
+/// platform.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

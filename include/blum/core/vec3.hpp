@@ -71,7 +71,7 @@ template <class T>
   return {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, a.z < b.z ? b.z : a.z};
 }
 
-/// 3 x 3 matrix, stored as its columns. If it is the direction of a grid, column a is the unit vector along index axis
+/// 3 x 3 matrix, stored as its columns. In the direction matrix of a grid, column a is the unit vector along index axis
 /// a.
 struct Mat3 {
   Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -99,7 +99,7 @@ struct Box3 {
     return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
   }
   [[nodiscard]] double diagonal() const { return is_empty() ? 0.0 : length(size()); }
-  /// Returns the largest absolute value of a coordinate of its corners.
+  /// Returns the largest absolute value of a coordinate of the box's corners.
   [[nodiscard]] double largest_coordinate() const {
     double largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

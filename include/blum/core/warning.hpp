@@ -1,5 +1,5 @@
-// Blum: warnings about results, and about inputs that can be used, but may not be the intended ones.
-// SPDX-License-Identifier: Apache-2.0
+// Blum: warnings about results, and about valid inputs that may not be the intended ones. SPDX-License-Identifier:
+// Apache-2.0
 #pragma once
 
 #include <array>
@@ -14,25 +14,27 @@ namespace blum {
 
 /// Subject of a warning, for programs that react to warnings. Texts of warnings may change; codes do not.
 enum class WarningCode : std::uint8_t {
-  form_not_certified,  ///< an axis has another form, because a better form was not certified
+  form_not_certified,  ///< an axis lacks a preferred property, because the form with this property was not certified
   not_certified,       ///< a result is not certified
   grid_moved,          ///< an axis was certified on a grid that was moved by part of a voxel, not on the first grid
   reversed_shells,     ///< shells or triangles faced the wrong way and were reversed
   solid_of_voxels,     ///< a mesh bounds no polyhedron, so its solid is represented by voxels
-  crossings_removed,   ///< a mesh crosses itself; the result is that of the mesh without the crossings
-  other_solid,         ///< options select another solid than the file of an axis records
-  other_vertices,      ///< vertices were merged, or equal vertices are separate: the mesh may not be the intended one
+  crossings_removed,   ///< a mesh crosses itself; the result is for the mesh after its crossings were removed
+  other_solid,         ///< options select a solid that differs from the solid recorded in the file of an axis
+  other_vertices,      ///< vertices were merged, or vertices at equal positions are separate: the mesh may not be the
+                       ///< intended one
   left_out,            ///< parts of an input or a result were left out
   open_mesh,           ///< a mesh has a boundary although a closed one is expected
   facing,              ///< triangles face different ways, or into the solid
   nothing_inside,      ///< no node of a field is inside
-  nothing_found,       ///< no object that was asked for was found
+  nothing_found,       ///< none of the requested objects was found
   other_topology,      ///< the topology of a result differs from that of its solid
   single_layer,        ///< an image has one layer of voxels, which form a plate
   rounded,             ///< a file contains rounded numbers, so guarantees for the exact numbers may not hold
   not_extended,        ///< rims of an axis were not extended
   coarse_grid,         ///< a grid is too coarse for the shape
-  meet_at_start,       ///< features meet at the start of a motion, so the times of their contacts are 0
+  meet_at_start,       ///< features are already in contact at the start of a motion, so the times of their contacts are
+                       ///< 0
 };
 
 template <>

@@ -32,9 +32,9 @@ class BoxBvh {
   BoxBvh& operator=(BoxBvh&&) noexcept;
   ~BoxBvh();
 
-  /// Updates the hierarchy to moved boxes. Results are then those of a newly built hierarchy, except for the order of
-  /// visits. Queries become slower if boxes that were neighbours move apart; a new hierarchy is then better. Must not
-  /// run at the same time as queries.
+  /// Updates the hierarchy to moved boxes. Afterwards, queries have the same results as with a newly built hierarchy,
+  /// except for the order of visits. Queries become slower if boxes that were neighbours move apart; build a new
+  /// hierarchy in this case. Must not run at the same time as queries.
   /// @throws InvalidOption if the number of boxes has changed; Cancelled. After Cancelled, the hierarchy is unchanged.
   /// Cost: O(n), at most a third of the time to build a hierarchy.
   void refit(std::span<const Box3> boxes, const Context& context = {});
@@ -58,7 +58,8 @@ class BoxBvh {
   /// Calls visit(a, b) for pairs of a box a of this hierarchy and a box b of `other`. It visits all pairs that are at
   /// most `margin` apart along every axis, and stops if visit() returns false.
   void for_each_pair(const BoxBvh& other, double margin, FunctionRef<bool(std::uint32_t, std::uint32_t)> visit) const;
-  /// Does the same for pairs of boxes of this hierarchy. Each pair is visited once; either of its boxes may be a.
+  /// Calls visit(a, b) for all pairs of boxes of this hierarchy that are at most `margin` apart along every axis. Stops
+  /// if visit() returns false. Each pair is visited once, in either order.
   void for_each_self_pair(double margin, FunctionRef<bool(std::uint32_t, std::uint32_t)> visit) const;
 
   /// Return all pairs (a, b) that for_each_pair() and for_each_self_pair() visit, in rising order, computed with
@@ -70,7 +71,7 @@ class BoxBvh {
 
  private:
   /// Calls visit(rank) for the boxes that are at most `margin` apart, along every axis, from the box of a given rank.
-  /// The rank of a box is its position along a curve through space. Only boxes of higher rank than the given one are
+  /// The rank of a box is its position along a curve through space. Only boxes with a rank above the given rank are
   /// visited. Stops if visit() returns false.
   void for_each_later(std::size_t rank, double margin, FunctionRef<bool(std::size_t)> visit) const;
 

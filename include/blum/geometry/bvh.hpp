@@ -55,16 +55,17 @@ struct RayCrossing {
   std::array<double, 3> weights{};  ///< barycentric weights of the triangle's corners, in their order; their sum is 1
   int side = 0;                     ///< 1 if the ray crosses towards the side that the triangle faces, -1 if it crosses
                                     ///< the other way
-  bool on_border = false;           ///< true if the ray meets an edge or corner, so that it meets neighbouring
-                                    ///< triangles, too
+  bool on_border = false;           ///< true if the ray meets an edge or corner of the triangle; then it also meets the
+                                    ///< triangles that share this edge or corner
 };
 
 /// Bounding-volume hierarchy over the triangles, segments and points of a mesh, with eight children per node and eight
-/// primitives per leaf. It copies the data it needs, so the mesh may be destroyed. The hierarchy for boxes is BoxBvh.
+/// primitives per leaf. Bvh copies the data that it needs, so the mesh may be destroyed after construction. The
+/// hierarchy for boxes is BoxBvh.
 ///
 /// All queries may run on many threads at once. Queries that return no list allocate no memory. The rounding error of
 /// distances is about 1e-15 times the extent of the box around mesh and query. Coordinates of queries must be finite,
-/// and of magnitude at most 1e140 times the mesh's longest side. A query beyond these limits finds nothing.
+/// and of magnitude at most 1e140 times the longest side of the mesh's box. A query beyond these limits finds nothing.
 ///
 /// Cost: O(n) time to build, and 135 bytes per primitive. On two cores, building takes about 15 ms for 70,000 triangles
 /// and 0.4 s for 1.6 million.
@@ -78,9 +79,9 @@ class Bvh {
   Bvh& operator=(Bvh&&) noexcept;
   ~Bvh();
 
-  /// Updates the hierarchy to moved vertices of the same primitives. Results are then those of a newly built hierarchy,
-  /// bit for bit; only the order of visits differs. Queries get slower as primitives that were neighbours move apart; a
-  /// new hierarchy is then better. Must not run at the same time as queries.
+  /// Updates the hierarchy to moved vertices of the same primitives. Afterwards, results equal those of a newly built
+  /// hierarchy, bit for bit; only the order of visits differs. Queries become slower if primitives that were neighbours
+  /// move apart; build a new hierarchy in this case. Must not run at the same time as queries.
   /// @param vertices  the new positions, one for each vertex of the mesh. Vertices that a triangle, segment or point
   ///                  uses must be finite, of magnitude at most 1e150.
   /// @throws InvalidMesh if the number of vertices has changed or a used vertex is out of range; Cancelled. After
@@ -91,8 +92,8 @@ class Bvh {
   /// Returns the closest site. If several sites have the smallest computed distance, the one with the smallest id is
   /// returned.
   /// @param max_distance  mesh units; farther sites are not found.
-  /// @return              nullopt if no site lies within max_distance, or if the query is out of the range stated
-  ///                      above.
+  /// @return              nullopt if no site lies within max_distance, or if a coordinate of the query exceeds the
+  ///                      limit of this class.
   /// Cost: about O(log n) near the surface; more if many sites are nearly equally close.
   [[nodiscard]] std::optional<NearestSite> nearest(const Vec3d& query,
                                                    double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -128,7 +129,7 @@ class Bvh {
   /// Returns all crossings with t <= limit, in rising order of t, then of triangle index.
   [[nodiscard]] std::vector<RayCrossing> crossings(const Ray& ray,
                                                    double limit = std::numeric_limits<double>::infinity()) const;
-  /// Returns the first of the crossings that crossings() would return.
+  /// Returns the first entry of the list that crossings() returns; nullopt if this list is empty.
   [[nodiscard]] std::optional<RayCrossing> first_crossing(const Ray& ray,
                                                           double limit = std::numeric_limits<double>::infinity()) const;
   /// Returns the first crossings of many rays, computed with threads. @throws Cancelled.
@@ -136,29 +137,30 @@ class Bvh {
       std::span<const Ray> rays, double limit = std::numeric_limits<double>::infinity(),
       const Context& context = {}) const;
 
-  /// Returns the leaves of the hierarchy that touch a box. With this set of leaves, many short queries in the same
-  /// small region are faster. The set must not be used after refit(). @return nullopt if so many leaves touch the box
-  /// that queries would not be faster.
+  /// Returns the leaves of the hierarchy that touch a box. This set of leaves makes many short queries in the same
+  /// small region faster. The set must not be used after refit(). @return nullopt if so many leaves touch the box that
+  /// queries would not be faster.
   [[nodiscard]] std::optional<BvhPart> part_in(const Box3& box) const;
   /// Returns the result of first_crossing() with limit 1. The points of the ray with t <= 1 must lie in the box that
   /// was passed to part_in().
   [[nodiscard]] std::optional<RayCrossing> first_crossing(const Ray& ray, const BvhPart& part) const;
-  /// Works as for_each_near() below, for a triangle that lies in the box that was passed to part_in().
+  /// Does the same as for_each_near() below. The given triangle must lie in the box that was passed to part_in().
   void for_each_near(const std::array<Vec3d, 3>& triangle, const BvhPart& part,
                      FunctionRef<bool(TriangleId)> visit) const;
 
   /// Calls visit(triangle) for triangles of the mesh that may have a common point with a given triangle, until visit()
   /// returns false. The given triangle need not belong to the mesh. The order is unspecified. All triangles with a
   /// common point are visited. Most other triangles are not visited: their box does not touch the given triangle's box,
-  /// or the plane of one triangle separates the two.
+  /// or the plane of one triangle separates the two triangles.
   void for_each_near(const std::array<Vec3d, 3>& triangle, FunctionRef<bool(TriangleId)> visit) const;
 
   /// Returns true if the box of a primitive may touch the given box. If it returns false, the given box contains no
   /// point of the mesh.
   [[nodiscard]] bool may_touch(const Box3& box) const;
 
-  /// Returns all primitives in the order of the leaves. Entries 8 k to 8 k + 7, for any k, are neighbours: they lay in
-  /// a compact box of their own when the hierarchy was built. The same holds for groups of 64, 512, ... entries.
+  /// Returns all primitives in the order of the leaves. Entries 8 k to 8 k + 7, for any k, are neighbours in space:
+  /// when the hierarchy was built, a compact box contained these eight primitives. The same holds for groups of 64,
+  /// 512, ... entries.
   [[nodiscard]] std::span<const std::uint32_t> order() const;
 
   /// Returns the box around all primitives, mesh units.

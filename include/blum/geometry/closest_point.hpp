@@ -16,9 +16,9 @@ namespace blum {
   return a + direction * std::clamp(dot(query - a, direction) / squared, 0.0, 1.0);
 }
 
-/// Returns the point of a closed triangle that is closest to a query, up to rounding. If the triangle is a sliver,
-/// another point of the triangle may be returned. If the triangle has no area, the closest point of its sides is
-/// returned.
+/// Returns the point of a closed triangle that is closest to a query, up to rounding. If the triangle is a sliver, the
+/// returned point lies on the triangle, but may not be the closest point. If the triangle has no area, the closest
+/// point of its sides is returned.
 [[nodiscard]] inline Vec3d closest_point_on_triangle(const Vec3d& query, const std::array<Vec3d, 3>& corners) {
   const auto& [a, b, c] = corners;
   const Vec3d normal = cross(b - a, c - a);

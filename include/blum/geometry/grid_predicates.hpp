@@ -26,7 +26,7 @@ using TriangleCorners = std::array<Vec3d, 3>;
 /// Positions of the first and the second end of an edge.
 using EdgeEnds = std::array<Vec3d, 2>;
 
-/// Returns true if a coordinate is at least that of a plane, so that it is above the moved plane.
+/// Returns true if a coordinate is at least the coordinate of a plane. The coordinate is then above the moved plane.
 [[nodiscard]] inline bool is_above(double coordinate, double plane) {
   return coordinate >= plane;
 }
@@ -35,12 +35,12 @@ using EdgeEnds = std::array<Vec3d, 2>;
 /// edge is directed from its first to its second end. Returns 0 if the edge is parallel to the axis.
 [[nodiscard]] int side_of_line(const EdgeEnds& edge, std::size_t axis, double u, double v);
 
-/// Returns the side (-1 or 1) of a triangle's plane on which a node of the grid lies. It is 1 if the triangle turns
-/// counter-clockwise seen from the node. Returns 0 if the corners of the triangle lie on one line.
+/// Returns the side (-1 or 1) of a triangle's plane on which a node of the grid lies. The side is 1 if the triangle
+/// turns counter-clockwise seen from the node. Returns 0 if the corners of the triangle lie on one line.
 [[nodiscard]] int side_of_node(const TriangleCorners& triangle, const Vec3d& node);
 
-/// Returns the sign (-1, 0, 1) of the component of a triangle's normal along an axis. It is 1 if the triangle turns
-/// counter-clockwise seen against the axis.
+/// Returns the sign (-1, 0, 1) of the component of a triangle's normal along an axis. The sign is 1 if the triangle
+/// turns counter-clockwise seen against the axis.
 [[nodiscard]] int normal_sign(const TriangleCorners& triangle, std::size_t axis);
 
 /// Returns true if a line along an axis crosses `first` at a smaller coordinate than `second`. The line must cross both
@@ -48,8 +48,8 @@ using EdgeEnds = std::array<Vec3d, 2>;
 [[nodiscard]] bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& second, std::size_t axis,
                                      double u, double v);
 
-/// Returns true if `first` crosses a plane at a smaller coordinate along the axis `along` than `second`. The plane is
-/// at right angles to the axis `across`, at coordinate `plane`. Both edges must cross it.
+/// Returns true if the edge `first` crosses a plane at a smaller coordinate, along the axis `along`, than the edge
+/// `second`. The plane is at right angles to the axis `across`, at coordinate `plane`. Both edges must cross the plane.
 [[nodiscard]] bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t across, double plane,
                                  std::size_t along);
 

@@ -13,17 +13,18 @@
 namespace blum {
 
 /// Returns the reason why a mesh bounds no solid, in one sentence with counts and possible remedies. The text is empty
-/// if the mesh is closed, oriented, manifold and faces outwards. Self-crossings are not looked for;
+/// if the mesh is closed, oriented, manifold and faces outwards. This function does not search for self-crossings;
 /// problem_of_crossings() finds them.
 [[nodiscard]] std::string problem_as_solid(const Topology& facts);
 
-/// Return a sentence if a mesh touches or crosses itself; else an empty text. The sentence contains the indices of two
-/// vertices or triangles. The first function looks for two vertices of triangles at the same position. The second one
-/// looks for triangles that cross, or touch beyond shared corners and edges.
+/// Return one sentence if a mesh touches or crosses itself; otherwise an empty text. The sentence contains the indices
+/// of two vertices or triangles. The function problem_of_places() searches for two vertices of triangles at the same
+/// position. The function problem_of_crossings() searches for triangles that cross, or touch beyond shared corners and
+/// edges.
 /// @throws Cancelled.
 [[nodiscard]] std::string problem_of_places(const MeshView& mesh);
 [[nodiscard]] std::string problem_of_crossings(const MeshView& mesh, const Context& context = {});
-/// Returns the same sentence for a result of find_self_intersections().
+/// Returns the sentence of problem_of_crossings(mesh) for a given result of find_self_intersections().
 [[nodiscard]] std::string problem_of_crossings(const SelfIntersections& found);
 
 /// Messages and ends of messages. All messages of Blum about meshes that bound no solid are in this namespace and in
@@ -48,14 +49,15 @@ inline constexpr std::string_view touches_when_resolved =
 /// End of a message "the mesh bounds no polyhedron: ...".
 inline constexpr std::string_view shells_cross = "its shells are not nested: they cross or coincide";
 
-/// Returns all reasons at edges and vertices why a mesh bounds no polyhedron, as the end of a message "the mesh bounds
-/// no polyhedron: ...". The text is empty if there are no such reasons.
+/// Returns all defects of edges and vertices because of which a mesh bounds no polyhedron. The text is the end of a
+/// message "the mesh bounds no polyhedron: ...". It is empty if edges and vertices have no defects.
 [[nodiscard]] std::string obstacles(const Topology& facts);
-/// Return the same kind of text (the end of that message) for pairs of triangles that cross or touch.
+/// Return the end of a message "the mesh bounds no polyhedron: ..." for pairs of triangles that cross or touch.
 /// @param is_complete  false if more than `pairs` pairs exist.
 [[nodiscard]] std::string crossing(std::size_t pairs, bool is_complete);
 [[nodiscard]] std::string touching(std::size_t pairs, bool is_complete);
-/// Returns the message of functions that need the triangles of the mesh itself, if the mesh crosses or touches itself.
+/// Returns the message for a mesh that crosses or touches itself, in functions that need the triangles of the mesh
+/// itself.
 /// @param how  text of Solid::reason().
 [[nodiscard]] std::string crosses_and_is_resolved(const std::string& how);
 /// Return the messages for a triangle with the same vertex at two corners, and for a triangle without area that no edge
@@ -71,7 +73,7 @@ inline constexpr std::string_view shells_cross = "its shells are not nested: the
 [[nodiscard]] std::string faces_inwards(const std::string& name);
 /// @param open                  number of edges that are not traversed by exactly two triangles, in opposite
 ///                              directions.
-/// @param is_closed_by_welding  true if merging equal vertices leaves no such edge.
+/// @param is_closed_by_welding  true if merging vertices at equal positions closes the mesh.
 [[nodiscard]] std::string not_closed(const std::string& name, std::size_t open, bool is_closed_by_welding);
 /// @param obstacle  ResolvedMesh::obstacle.
 [[nodiscard]] std::string not_resolved(const std::string& name, const std::string& obstacle);

@@ -20,9 +20,9 @@ struct MovingBox {
 };
 
 /// Bounding-volume hierarchy over moving boxes, with eight children per node. It finds pairs of boxes that may touch at
-/// some time. If two boxes sweep the same region only at different times, for example in a cloth that flies by, the
-/// pair is not visited. A hierarchy of boxes around whole motions would visit this pair. The indices of boxes are
-/// passed to a function of the caller, the visitor.
+/// some time. Two boxes may sweep the same region at different times, for example in a cloth that flies by. Such a pair
+/// is not visited, while a hierarchy of boxes around whole motions would visit it. The indices of boxes are passed to a
+/// function of the caller, the visitor.
 ///
 /// All queries may run on many threads at once, and allocate no memory. Every pair of boxes that touch at some time is
 /// visited. Because of rounding to single precision, a few pairs that do not touch are visited, too. Cost: O(n log n)
@@ -44,14 +44,14 @@ class MovingBoxBvh {
   /// that may touch at some time.
   void for_each_pair(std::size_t block, const MovingBoxBvh& other,
                      FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
-  /// Does the same for pairs of boxes of this hierarchy. If it is called for all blocks, each pair is visited once;
-  /// either of its boxes may be a.
+  /// Calls visit(a, b) for pairs of a box in a block and any box of this hierarchy that may touch at some time. If this
+  /// function is called for all blocks, each pair is visited once, in either order.
   void for_each_self_pair(std::size_t block, FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
   /// Calls limit = visit(k) for each box k that may touch `box` before or at the time `limit`. Among boxes of one node,
   /// those that may touch earlier are visited first. Because of rounding to single precision, boxes that touch a little
   /// later, or not at all, are visited, too.
-  /// @param limit  a time; all boxes that may touch are visited if it is 1.
+  /// @param limit  latest time of a contact; with 1, all boxes that may touch are visited.
   void visit_until(const MovingBox& box, double limit, FunctionRef<double(std::uint32_t)> visit) const;
 
  private:

@@ -20,18 +20,18 @@ namespace blum {
 /// Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the points of the mesh.
 ///
 /// All queries may run on many threads at once. Only the queries that return pairs of nodes allocate memory. Every pair
-/// whose distance is within the limit is visited. Pairs that are farther apart may be visited, too. The hierarchy
-/// determines these additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3 microseconds
-/// per primitive, and 150 bytes per primitive.
+/// whose distance is within the limit is visited. Pairs that are farther apart may be visited, too. The shape of the
+/// hierarchy determines the additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3
+/// microseconds per primitive, and 150 bytes per primitive.
 class OrientedBvh {
  public:
   /// Limits on the pairs that the rest of a search visits. A visitor returns them.
   struct Wanted {
     double limit;                           ///< largest distance of a pair; if it is negative, the search ends
     std::uint32_t last_there = 0xffffffff;  ///< primitives of the other hierarchy with a larger index are not visited
-    std::uint32_t last_here = 0xffffffff;   ///< likewise, primitives of this hierarchy
+    std::uint32_t last_here = 0xffffffff;   ///< primitives of this hierarchy with a larger index are not visited
 
-    Wanted(double limit_) : limit(limit_) {}  // NOLINT(google-explicit-constructor): mostly a distance is all
+    Wanted(double limit_) : limit(limit_) {}  // NOLINT(google-explicit-constructor): usually only a distance
     Wanted(double limit_, std::uint32_t last_there_) : limit(limit_), last_there(last_there_) {}
     Wanted(double limit_, std::uint32_t last_there_, std::uint32_t last_here_)
         : limit(limit_), last_there(last_there_), last_here(last_here_) {}
@@ -47,8 +47,8 @@ class OrientedBvh {
   OrientedBvh& operator=(OrientedBvh&&) noexcept;
   ~OrientedBvh();
 
-  /// Updates the hierarchy to moved vertices of the same primitives. Queries get slower as primitives that were
-  /// neighbours move apart; a new hierarchy is then better. Must not run at the same time as queries.
+  /// Updates the hierarchy to moved vertices of the same primitives. Queries become slower if primitives that were
+  /// neighbours move apart; build a new hierarchy in this case. Must not run at the same time as queries.
   /// @param vertices  the new positions, one for each vertex of the mesh. Vertices that a triangle, segment or point
   ///                  uses must be finite.
   /// @throws InvalidMesh if the number of vertices has changed; Cancelled. After Cancelled, refit() must be called
@@ -63,36 +63,36 @@ class OrientedBvh {
   /// Calls limit = visit(a, b, distance) for each primitive a of this hierarchy and each primitive b of `other` that
   /// may be at most `limit` apart. Pairs are visited approximately in rising order of the lower bounds on their
   /// distances. A visitor that returns a lower limit shortens the search; a negative limit ends it.
-  /// @param place  maps points of the other hierarchy to coordinates of this one.
+  /// @param place  maps points of the other hierarchy to coordinates of this hierarchy.
   void for_each_near_pair(const OrientedBvh& other, const RigidTransform& place, double limit, Visit visit) const;
 
-  /// Node of a hierarchy. A node at level -1 is a block of primitives. The boxes of the children of a node at a higher
-  /// level are a block.
+  /// Node of a hierarchy. A node at level -1 is a block of primitives. A node at a higher level is a block of the boxes
+  /// of its children.
   struct Node {
     std::uint32_t index = 0;
     std::int32_t level = -1;
     [[nodiscard]] bool is_leaf() const { return level < 0; }
   };
-  /// Node of this hierarchy (`here`), node of another (`there`), and a lower bound on their squared distance, up to
-  /// rounding. If their boxes overlap, it is minus the square of their overlap.
+  /// Node of this hierarchy (`here`), node of the other hierarchy (`there`), and a lower bound on their squared
+  /// distance, up to rounding. If the boxes of the nodes overlap, the bound is minus the square of the overlap.
   struct NodePair {
     double squared_gap = 0;
     Node here, there;
   };
-  /// Does the first steps of for_each_near_pair(). It descends `dives` times from the closest remaining pair of nodes
-  /// to primitives, and visits the pairs that it finds. The visited pairs are mostly near the closest pair of all, so
-  /// their distances exclude most other pairs. Allocates memory.
+  /// Does the first steps of for_each_near_pair(). The search descends `dives` times from the closest remaining pair of
+  /// nodes to primitives, and visits the pairs of primitives that it finds. The visited pairs are mostly near the
+  /// closest pair of all, so their distances exclude most other pairs. Allocates memory.
   /// @return  the remaining pairs of nodes, closest first. Threads can share them.
   [[nodiscard]] std::vector<NodePair> dive_to_near_pairs(const OrientedBvh& other, const RigidTransform& place,
                                                          double limit, std::size_t dives, Visit visit) const;
   /// Works as for_each_near_pair(), but only for the primitives below pairs of nodes, and ends after `steps` steps. A
-  /// step replaces a node by its children, or compares the primitives of two nodes. It takes up to a microsecond,
+  /// step replaces a node by its children, or compares the primitives of two nodes. A step takes up to a microsecond,
   /// without the calls of `visit`.
   /// @return the remaining pairs of nodes; empty if the search is complete.
   [[nodiscard]] std::vector<NodePair> visit_some_near_pairs(std::span<const NodePair> nodes, const OrientedBvh& other,
                                                             const RigidTransform& place, double limit,
                                                             std::size_t steps, Visit visit) const;
-  /// Returns the pair of the whole hierarchies.
+  /// Returns the pair of the root nodes of this hierarchy and the other hierarchy.
   [[nodiscard]] NodePair whole(const OrientedBvh& other) const;
 
   /// Returns the number of blocks. A block is a group of up to eight primitives. Threads can share a loop over blocks.
@@ -105,8 +105,8 @@ class OrientedBvh {
   /// Works as for_each_near_pair(), but only for the primitives of one block of this hierarchy.
   void for_each_near_pair(std::size_t block, const OrientedBvh& other, const RigidTransform& place, double limit,
                           Visit visit) const;
-  /// Works as for_each_near_pair(), for a primitive of one block and any primitive of this hierarchy. If it is called
-  /// for all blocks, each pair is visited once; either of its primitives may be first.
+  /// Works as for_each_near_pair(), for pairs of a primitive of one block and any primitive of this hierarchy. If this
+  /// function is called for all blocks, each pair is visited once, in either order.
   void for_each_near_self_pair(std::size_t block, double limit, Visit visit) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace blum {
 
-/// Returns the number of primitives of a mesh: its triangles, then its segments, then its points.
+/// Returns the number of primitives of a mesh. Primitives are its triangles, then its segments, then its points.
 [[nodiscard]] inline std::size_t primitive_count(const MeshView& mesh) {
   return mesh.triangles.size() + mesh.segments.size() + mesh.points.size();
 }
@@ -29,8 +29,8 @@ namespace blum {
 }
 
 /// Returns the indices of the one, two or three vertices of a feature of a triangle, padded with -1, as in files. The
-/// smaller vertex of an edge is first. A face has the order of the triangle. If the triangle has the same vertex at two
-/// corners, this vertex is listed once.
+/// smaller vertex of an edge is first. The vertices of a face are in the order of the triangle's corners. If the
+/// triangle has the same vertex at two corners, this vertex is listed once.
 [[nodiscard]] inline std::array<std::int32_t, 3> feature_vertices(const Triangle& triangle,
                                                                   const TriangleFeature& feature) {
   const std::size_t count = feature.kind == SiteKind::vertex ? 1 : feature.kind == SiteKind::edge ? 2 : 3;

@@ -11,7 +11,7 @@ namespace blum {
 /// Points origin + t * direction for t >= 0.
 struct Ray {
   Vec3d origin;
-  Vec3d direction;  ///< of any length but 0
+  Vec3d direction;  ///< of any length except 0
 };
 
 namespace detail {
@@ -40,7 +40,7 @@ struct TriangleCrossing {
 
 /// Returns the crossing of a ray and a closed triangle. Returns nullopt if they do not cross, or if the ray lies in the
 /// triangle's plane. The existence of a crossing, `side` and `on_border` are exact for coordinates in the range of
-/// ray_side(). So if a ray meets an edge or a corner, it crosses exactly the triangles that share the edge or corner.
+/// ray_side(). So a ray that meets an edge or a corner crosses exactly the triangles that share this edge or corner.
 [[nodiscard]] std::optional<TriangleCrossing> crossing(const Ray& ray, const std::array<Vec3d, 3>& triangle);
 
 }  // namespace detail

@@ -17,12 +17,12 @@ namespace blum {
 struct ResolveOptions {
   /// Largest number of pairs of triangles that may cross or touch. If there are more pairs, the mesh is not resolved.
   std::size_t most_pairs = 100000;
-  /// Largest number of rounds. At the end of a round, new vertices are rounded. If this makes triangles cross anew,
-  /// another round follows. With 0 there is one round, and its result is not checked: its connectivity is exact, but
-  /// triangles may cross because of rounding errors.
+  /// Largest number of rounds. At the end of a round, new vertices are rounded. If rounding makes triangles cross
+  /// again, another round follows. With 0, there is one round, and its result is not checked: its connectivity is
+  /// exact, but triangles may cross because of rounding errors.
   int most_rounds = 6;
-  /// Smallest winding number of points that count as inside. With 2, these are the points that two overlapping parts of
-  /// the mesh enclose.
+  /// Points with at least this winding number are inside. With 2, the inside consists of the points that two
+  /// overlapping parts of the mesh both enclose.
   int least_winding = 1;
 };
 
@@ -61,12 +61,12 @@ struct Description<CrossingCounts> {
   };
 };
 
-/// Mesh without crossings, or the reason why it was not found.
+/// Mesh without crossings, or the reason why the crossings were not resolved.
 struct ResolvedMesh {
   static constexpr std::uint32_t no_vertex = 0xffffffffU;
 
-  std::string obstacle;  ///< reason why crossings are not resolved, else empty. If it is not empty, the other members
-                         ///< describe the failed attempt
+  std::string obstacle;  ///< reason why crossings are not resolved; empty if they are. If there is a reason, the other
+                         ///< members describe the failed attempt
   CrossingCounts counts;
   TriangleMesh mesh;
   std::vector<std::uint32_t> vertex_of;    ///< for each vertex of `mesh`: its index in the input; no_vertex for new
@@ -76,7 +76,7 @@ struct ResolvedMesh {
   /// For each triangle of `mesh`: the body that it bounds, as the index of the body's outer shell in topology(mesh). It
   /// is empty if the crossings are not resolved.
   std::vector<std::uint32_t> body_of;
-  bool has_inside = true;  ///< false if no point is inside, which is an obstacle, too
+  bool has_inside = true;  ///< false if no point is inside; `obstacle` then contains this reason
 
   [[nodiscard]] bool is_resolved() const { return obstacle.empty(); }
 };
@@ -89,14 +89,14 @@ struct ResolvedMesh {
 /// nothing crosses or touches are kept or removed as a whole. Exact arithmetic decides which parts exist and how they
 /// are connected. New vertices are then rounded to doubles.
 ///
-/// The result is checked exactly. It must be closed and manifold, and its shells must face away from the solid. No two
-/// triangles of one body may cross, or touch beyond shared corners and edges. Rounding must not change the genus of any
-/// shell. If the result fails this check, its crossings are resolved in another round. If the last round fails,
+/// The result is checked exactly. The mesh must be closed and manifold, and its shells must face away from the solid.
+/// No two triangles of one body may cross, or touch beyond shared corners and edges. Rounding must not change the genus
+/// of any shell. If the result fails this check, its crossings are resolved in another round. If the last round fails,
 /// ResolvedMesh::obstacle contains the reason.
 ///
 /// If parts of the solid meet only in a vertex or an edge, the mesh is separated there: each part gets vertices of its
-/// own. This holds for parts of the same body and of different bodies. All other vertices at the same position become
-/// one vertex.
+/// own. Both parts of one body and parts of different bodies are separated. All other vertices at the same position
+/// become one vertex.
 ///
 /// @throws InvalidMesh if the mesh fails validate(mesh) or has no triangles; Cancelled.
 /// Cost of a round, on one core: find_self_intersections() twice, topology(), a Bvh, and 0.1 ms for each pair of

@@ -31,9 +31,9 @@ struct SelfIntersections {
 /// Returns the pairs of triangles that cross or touch beyond shared corners and edges. Corners are shared if they have
 /// the same index or the same position (-0.0 equals 0.0), so the mesh need not be welded.
 ///
-/// The result is exact for the given coordinates, if the magnitude of each is 0 or at least 1e-80 times the largest
-/// magnitude. No tolerance is used: parts that only nearly touch are not found. Rounded coordinates may make parts that
-/// should touch lie apart or cross. Triangles without area, segments and points are ignored.
+/// The result is exact for the given coordinates, if the magnitude of each coordinate is 0 or at least 1e-80 times the
+/// largest magnitude. No tolerance is used: parts that only nearly touch are not found. Parts that should touch may lie
+/// apart or cross if coordinates were rounded. Triangles without area, segments and points are ignored.
 ///
 /// If an edge lies exactly in another triangle, both triangles at the edge are reported as touching that triangle, even
 /// if the surface crosses it. So a mesh is certainly free of crossings only if `pairs` is empty.
@@ -47,29 +47,29 @@ struct SelfIntersections {
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit = 100000,
                                                         const Context& context = {});
 
-/// Returns the same pairs, but uses a given order of the triangles that keeps neighbours in space together
-/// (OrientedBvh::order()). This saves the computation of such an order, which takes a third of the search. The pairs
-/// depend on the order only if there are more than `limit` pairs.
+/// Returns the pairs of find_self_intersections(mesh, limit), but uses a given order of the triangles that keeps
+/// neighbours in space together (OrientedBvh::order()). A given order saves a third of the time of the search. The
+/// pairs depend on the order only if there are more than `limit` pairs.
 /// @throws InvalidOption if the number of entries is not the number of triangles.
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
                                                         std::size_t limit, const Context& context = {});
 
-/// Returns the same pairs, but uses a given table of vertices at the same position. The mesh must pass validate(mesh);
-/// this is not checked.
+/// Returns the pairs of find_self_intersections(mesh, limit), but uses a given table of vertices at the same position.
+/// The mesh must pass validate(mesh); this is not checked.
 /// @param corners  result of weld_clusters(mesh.vertices). @throws InvalidOption if the number of entries is not the
 ///                 number of vertices.
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
                                                         std::span<const std::uint32_t> corners, std::size_t limit,
                                                         const Context& context = {});
 
-/// Search that decides, frame after frame, if a deforming mesh crosses or touches itself. It keeps an order of the
-/// triangles in space between frames, until groups of neighbours have moved apart. Computing this order takes as long
-/// as the rest of a search. Results do not depend on the order.
+/// Search that decides, frame after frame, if a deforming mesh crosses or touches itself. Between frames, the search
+/// keeps a spatial order of the triangles, until groups of neighbours have moved apart. Computing a spatial order takes
+/// as long as the rest of a search. Results do not depend on the order.
 class SelfIntersectionSearch {
  public:
   SelfIntersectionSearch() = default;
-  /// @param order  order of the first mesh's triangles in space, so that it need not be computed. For a mesh without
-  /// segments and points, it is Bvh::order(). It is ignored if its size is not the number of triangles.
+  /// @param order  spatial order of the first mesh's triangles, which saves computing one. For a mesh without segments
+  /// and points, Bvh::order() is such an order. The order is ignored if its size is not the number of triangles.
   explicit SelfIntersectionSearch(std::span<const std::uint32_t> order) : order_(order.begin(), order.end()) {}
 
   /// Returns true if find_self_intersections() would find a pair. The triangles of `mesh` may differ from those of the
@@ -80,8 +80,8 @@ class SelfIntersectionSearch {
 
  private:
   std::vector<std::uint32_t> order_;
-  double looseness_ = -1;  ///< sum of the box extents of the groups, relative to those of the triangles, when the
-                           ///< groups were made; negative for new groups
+  double looseness_ = -1;  ///< sum of the extents of the groups' boxes, divided by that of the triangles' boxes, when
+                           ///< the groups were made; negative until it is computed
 };
 
 }  // namespace blum

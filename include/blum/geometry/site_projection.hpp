@@ -32,17 +32,17 @@ class SiteProjection {
   /// away from all planes that bound the domain.
   /// @param query   finite.
   /// @param margin  mesh units, > 0.
-  /// @param found   receives the closest point. To return the point by value would double the cost, because a copy has
+  /// @param found   receives the closest point. Returning the point by value would double the cost, because a copy has
   ///                to wait for data that was just written.
-  /// @return        false if the query is outside of the domain or closer than `margin` to its border. It is also false
-  ///                if this is uncertain, for example for faces without a usable plane.
+  /// @return        false if the query is outside of the domain or closer than `margin` to its border. Also false if
+  ///                rounding may decide these conditions, for example for faces without a usable plane.
   /// Cost: about 15 ns; for a vertex, 5 ns for each edge at the vertex.
   [[nodiscard]] bool project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const;
 
-  /// Does the same for many queries. Results are those of the other function, bit for bit.
+  /// Projects many queries. Results equal those of the function for single queries, bit for bit.
   /// @param sites  one for each query. Queries without a site are left out.
   /// @param found  one for each query. Entries without a closest point get no site.
-  /// Cost: half that of the other function if most sites are faces.
+  /// Cost: half that of the function for single queries, if most sites are faces.
   void project(std::span<const SiteId> sites, std::span<const Vec3d> queries, double margin,
                std::span<NearestSite> found) const;
 

@@ -11,8 +11,8 @@
 
 namespace blum {
 
-/// Returns an order of points in which neighbours in space are together. Positions 8 k to 8 k + 7 in the order, for any
-/// k, are points in a compact box of their own. The same holds for groups of 64, 512, ... points. The points are split
+/// Returns an order of points that keeps neighbours in space together. For any k, the points at positions 8 k to 8 k +
+/// 7 of the order lie in a compact box. The same holds for groups of 64, 512, ... points. The points are split
 /// recursively, across the longest side of their box. In each split, the number of points in the first group is a power
 /// of two. A space-filling curve is not suitable: where the curve leaves a surface and meets the surface elsewhere, a
 /// group would contain points of both regions.

@@ -26,7 +26,8 @@ struct SurfacePatch {
 /// Returns the normals of all triangles. Their lengths are twice the areas.
 [[nodiscard]] std::vector<Vec3d> triangle_normals(const MeshView& mesh);
 
-/// Returns for each edge of a mesh 1 if it has exactly two triangles with normals, and bends by at most an angle.
+/// Returns a number for each edge of a mesh. The number is 1 if the edge has exactly two triangles with normals, and
+/// bends by at most `angle`; otherwise 0.
 /// @param normals  for each triangle, a vector in the direction of its normal; 0 if it has none.
 /// @param angle    degrees.
 [[nodiscard]] std::vector<std::uint8_t> smooth_edges(const MeshView& mesh, const SiteTable& sites,
@@ -39,17 +40,18 @@ class SurfacePatches {
   /// @param angle  largest bend at an edge inside a patch, in degrees.
   /// @throws InvalidMesh, Cancelled. Cost: near-linear.
   SurfacePatches(const MeshView& mesh, double angle, const Context& context);
-  /// Does the same with the given sites of the mesh. The mesh must pass validate().
+  /// Finds patches in the same way, with the given sites of the mesh. The mesh must pass validate().
   SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context);
-  /// Does the same with given normals, for example with those of planes that several triangles have in common.
+  /// Finds patches in the same way, with given normals. For example, these are the normals of planes that several
+  /// triangles have in common.
   /// @param normals  for each triangle, a vector in the direction of its normal. Its length is twice the area.
   SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals, double angle,
                  const Context& context);
 
   /// Uses given patches.
-  /// @param normals   as above.
-  /// @param patch_of  for each triangle, the number of its patch; none for a triangle without one. Numbers start at 0,
-  /// and none is left out.
+  /// @param normals   for each triangle, a vector in the direction of its normal. Its length is twice the area.
+  /// @param patch_of  for each triangle, the number of its patch; `none` if it belongs to no patch. Patches are
+  /// numbered consecutively from 0.
   SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals,
                  std::vector<std::uint32_t> patch_of);
 

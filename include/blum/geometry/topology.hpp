@@ -17,8 +17,8 @@
 
 namespace blum {
 
-/// Facts about edges and volumes that decide if the triangles of a mesh bound a solid. Sign rules use them. Triangles
-/// with the same vertex at two corners are left out, because they bound nothing.
+/// Facts about edges and volumes that decide if the triangles of a mesh bound a solid. Sign rules use these facts.
+/// Triangles with the same vertex at two corners are left out, because they bound nothing.
 struct Orientation {
   bool closed = false;    ///< a triangle exists, and every edge of a triangle has exactly two triangles
   bool oriented = false;  ///< no edge with two triangles is traversed in the same direction by both
@@ -33,8 +33,8 @@ struct Orientation {
   double signed_volume = 0;            ///< volume of the solid, in cubic mesh units; 0 unless closed && oriented
 };
 
-/// Returns the facts of Orientation, without the other facts of topology(). It does not look for self-intersections.
-/// The mesh must pass validate(), and the table must belong to this mesh.
+/// Returns the facts of Orientation, without the other facts of topology(). This function does not search for
+/// self-intersections. The mesh must pass validate(), and the table must belong to this mesh.
 /// Cost: O(triangles); about 1 ms for 70,000 triangles. If there are several shells, the cost is that of topology().
 [[nodiscard]] Orientation orientation(const MeshView& mesh, const SiteTable& sites);
 
@@ -45,8 +45,8 @@ struct Shell {
   Box3 bounds;               ///< mesh units
   double signed_volume = 0;  ///< cubic mesh units; positive if the shell faces away from its interior
   double area = 0;           ///< square mesh units
-  /// V - E + F, with V vertices, E edges and F triangles. A vertex counts once for each fan of triangles around it, so
-  /// that fans that touch only in the vertex count as separate.
+  /// V - E + F, with V vertices, E edges and F triangles. A vertex counts once for each fan of triangles around it. So
+  /// fans that touch only in a vertex count as separate.
   std::int64_t euler_characteristic = 0;
   std::int64_t genus = 0;       ///< number of handles, (2 - euler_characteristic) / 2
   std::uint32_t depth = 0;      ///< number of other shells that contain this shell
@@ -75,8 +75,8 @@ struct Description<Shell> {
 };
 
 /// Counts and facts of a mesh. Vertices are distinguished by index, not by position. If parts of a mesh should be
-/// connected, weld the mesh first (see weld()). Self-intersections, and shells that cross each other, are not looked
-/// for; find_self_intersections() finds them.
+/// connected, weld the mesh first (see weld()). Self-intersections and crossings of shells are not considered;
+/// find_self_intersections() finds them.
 struct Topology {
   std::size_t vertices = 0;        ///< all vertices of the mesh
   std::size_t named_vertices = 0;  ///< vertices that a triangle, segment or point uses
@@ -105,9 +105,10 @@ struct Topology {
   bool faces_outwards = false;  ///< closed && oriented, and every shell faces away from the solid
 
   double area = 0;  ///< area of all triangles, square mesh units
-  /// Sum of the signed volumes of the shells, in cubic mesh units. If `betti` is set, it is the volume of the solid.
+  /// Sum of the signed volumes of the shells, in cubic mesh units. If `betti` is set, this sum is the volume of the
+  /// solid.
   double signed_volume = 0;
-  /// V - E + F, if the triangles have V distinct vertices, E distinct edges and F faces.
+  /// V - E + F, for the V distinct vertices, E distinct edges and F faces of the triangles.
   std::int64_t euler_characteristic = 0;
 
   /// Closed, consistently oriented components, in rising order of their smallest triangle index.
@@ -167,7 +168,7 @@ struct Description<Topology> {
 /// Cost: O(n log n) for n triangles; more if the boxes of many shells overlap and the shells lie above each other. For
 /// 1.6 million triangles, about 0.8 s and 100 bytes per triangle.
 [[nodiscard]] Topology topology(const MeshView& mesh, const Context& context = {});
-/// Returns the same facts, but uses a given table of the mesh's sites.
+/// Returns the topology of a mesh, but uses a given table of the mesh's sites.
 [[nodiscard]] Topology topology(const MeshView& mesh, const SiteTable& sites, const Context& context = {});
 
 }  // namespace blum

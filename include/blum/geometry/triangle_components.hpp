@@ -20,7 +20,8 @@ inline constexpr std::uint32_t no_component = 0xffffffff;
 /// Uses of one edge by triangles.
 struct EdgeTally {
   std::uint32_t count = 0;     ///< number of uses
-  std::int32_t balance = 0;    ///< uses from the smaller to the larger vertex, minus those in the other direction
+  std::int32_t balance = 0;    ///< number of uses from the smaller to the larger vertex, minus the number of uses in
+                               ///< the opposite direction
   std::uint32_t triangle = 0;  ///< one of the triangles that use the edge
 
   [[nodiscard]] bool is_consistent() const { return count == 2 && balance == 0; }
@@ -36,7 +37,7 @@ struct SurfaceComponents {
   std::vector<std::uint8_t> is_closed;  ///< per component: every edge has exactly two triangles
   std::vector<std::uint8_t> is_shell;   ///< per component: closed and consistently oriented
 };
-/// Finds the components.
+/// Finds the connected components of the triangles of a mesh.
 /// @param edges  the result of tally_edges() for the mesh.  Cost: linear time.
 [[nodiscard]] SurfaceComponents find_components(const MeshView& mesh, const SiteTable& sites,
                                                 std::span<const EdgeTally> edges);

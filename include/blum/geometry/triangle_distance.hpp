@@ -32,17 +32,17 @@ struct TriangleDistance {
 /// Returns the closest points of two triangles. A triangle may have no area: it is then a segment or a point.
 ///
 /// The distance is 0 if and only if the triangles have a common point. Otherwise it is at least the smallest normal
-/// double. These two statements hold exactly if the magnitude of each coordinate is 0 or at least 1e-80 times the
-/// largest magnitude. Positive distances have an error of a few 1e-15 times the largest coordinate, measured from a
-/// corner of the triangles. The error does not depend on the shape of the triangles.
+/// double. These two guarantees require that the magnitude of each coordinate is 0 or at least 1e-80 times the largest
+/// magnitude. Positive distances have an error of a few 1e-15 times the largest coordinate relative to a corner of the
+/// triangles. The error does not depend on the shape of the triangles.
 /// @param a, b  corners of the triangles; finite, of magnitude at most 1e150.
 /// @return      closest points and their distance. If the two triangles are exchanged, the result is the same up to
 ///              rounding.
 /// Cost: about 0.4 microseconds. Method: docs/theory/proximity.md.
 [[nodiscard]] TriangleDistance triangle_distance(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b);
 
-/// Returns true if two triangles have a common point. Triangles may have no area. The answer is exact for the same
-/// coordinates as in triangle_distance().
+/// Returns true if two triangles have a common point. Triangles may have no area. The answer is exact if coordinates
+/// satisfy the condition for the guarantees of triangle_distance().
 [[nodiscard]] bool triangles_meet(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b);
 
 /// Returns the distances of many pairs, computed with threads.

@@ -43,7 +43,7 @@ struct TriangleMesh {
 [[nodiscard]] TriangleMesh copy_of(const MeshView& mesh);
 
 /// Calls visit(vertex) for each corner of each triangle, then each end of each segment, then each point. A vertex is
-/// visited once for each time that it is used.
+/// visited once for each use.
 template <class Visit>
 void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   for (const Triangle& triangle : mesh.triangles) {
@@ -69,8 +69,8 @@ void for_each_named_vertex(const MeshView& mesh, Visit visit) {
 [[nodiscard]] Box3 bounds(const MeshView& mesh);
 
 /// Checks the conditions that every algorithm needs. At least one triangle, segment or point must exist. Indices must
-/// be in range. The numbers of vertices, triangles, segments and points must fit ids. Coordinates of used vertices must
-/// be finite, and of magnitude at most 1e150 so that their squares are finite.
+/// be in range. The numbers of vertices, triangles and segments must be at most max_id_count. Coordinates of used
+/// vertices must be finite, and of magnitude at most 1e150 so that their squares are finite.
 /// @throws InvalidMesh with the index of the first element that breaks a condition.
 void validate(const MeshView& mesh);
 

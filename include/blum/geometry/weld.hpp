@@ -14,9 +14,9 @@ namespace blum {
 /// most `tolerance` (mesh units) apart. Merging continues along chains. If each vertex of a chain is at most
 /// `tolerance` away from the next one, the whole chain becomes one vertex, whatever its length.
 ///
-/// - A merged vertex has the position of its member with the smallest index. The vertices of the result are in the
-///   order of these indices, so the result depends on the input alone. Vertices that no triangle, segment or point uses
-///   are merged and kept, too.
+/// - A merged vertex has the position of the original vertex with the smallest index. The vertices of the result are in
+///   the order of these indices, so the result depends on the input alone. Vertices that no triangle, segment or point
+///   uses are merged and kept, too.
 /// - Triangles, segments and points keep their order. The shape loses no points, even if triangles are degenerate after
 ///   welding. A triangle with two equal corners (a, a, b) is removed. The segment (a, b) is appended to `segments` if
 ///   no other triangle or segment has this edge. A triangle or segment whose corners are all the same vertex is
@@ -24,9 +24,9 @@ namespace blum {
 ///   kept once. Repeated triangles are all kept.
 /// - Vertices with a coordinate that is not finite are merged only with vertices at exactly the same position.
 ///
-/// Cost: O(V + F) expected time for V vertices and F triangles if tolerance is 0, otherwise O(V log V + F). This holds
-/// for coordinates of any magnitude, and if many vertices coincide or are close together. A tolerance below 1e-300
-/// counts as 0.
+/// Cost: O(V + F) expected time for V vertices and F triangles if tolerance is 0, otherwise O(V log V + F). This cost
+/// holds for coordinates of any magnitude, and for many vertices that coincide or are close together. A tolerance below
+/// 1e-300 counts as 0.
 /// @throws InvalidOption if tolerance is negative or not finite.
 /// @throws InvalidMesh if an index is out of range or there are more than max_id_count vertices.
 [[nodiscard]] TriangleMesh weld(const MeshView& mesh, double tolerance = 0);

@@ -16,7 +16,7 @@ namespace blum {
 /// Generalized winding number w of the triangles of a mesh: the sum of their signed solid angles, divided by 4 pi. See
 /// Jacobson, Kavan, Sorkine-Hornung, "Robust inside-outside segmentation", 2013. For a closed surface that faces
 /// outwards, w is 1 inside and 0 outside. For open surfaces and soups, w need not be a whole number. Away from the
-/// triangles, it varies smoothly (it is harmonic). A point is inside if w > 1/2.
+/// triangles, w varies smoothly (w is harmonic). A point is inside if w > 1/2.
 ///
 /// Clusters of distant triangles are replaced by the first three terms of their multipole series. See Barill, Dickson,
 /// Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", 2018. This class bounds the error of the
@@ -28,7 +28,7 @@ namespace blum {
 class WindingNumber {
  public:
   /// @param mesh  must pass validate(mesh). Its segments and points have no winding number and are ignored.
-  /// @throws InvalidMesh, also if the mesh has more sites than ids; Cancelled.
+  /// @throws InvalidMesh, also if the mesh has more than max_id_count sites; Cancelled.
   /// Cost: O(n log n) time for n triangles, about 12 ms for 70,000 on two cores, and 100 bytes per triangle.
   explicit WindingNumber(const MeshView& mesh, const Context& context = {});
   /// Constructs the same object, but uses a given table of the mesh's sites.
@@ -52,7 +52,7 @@ class WindingNumber {
   [[nodiscard]] bool is_inside(const Vec3d& query) const;
 
   /// Side of a query (inside or outside), and a lower bound on |w - 1/2| at the query. If a path from the query crosses
-  /// no triangle, and w changes by less than `margin` along the path, the path stays on this side.
+  /// no triangle, and w changes by less than `margin` along it, the path stays on the query's side.
   struct Decision {
     bool is_inside = false;
     double margin = 0;  ///< 0 if rounding alone may change the side
@@ -95,12 +95,12 @@ class WindingNumber {
 
   /// Returns nullopt if |w - 1/2| may be at most `change`. Otherwise, returns true if w > 1/2, and false if w < 1/2. If
   /// a side is returned, every point whose w is within `change` of w at the query has the same side. A bound on the
-  /// gradient of w can supply `change`. With change = 0 the result is that of is_inside(), except for nullopt if w is
-  /// 1/2 up to rounding.
+  /// gradient of w can supply `change`. With change = 0, the result is that of is_inside(); only if w is 1/2 up to
+  /// rounding, it is nullopt.
   [[nodiscard]] std::optional<bool> side(const Vec3d& query, double change) const;
 
-  /// Returns the side of a whole box: true if w > 1/2 at all of its points, false if w > 1/2 at none of its points.
-  /// Returns nullopt if neither can be shown, or if the box may touch a triangle. A returned side is always right.
+  /// Returns the side of a whole box: true if w > 1/2 at all points of the box, false if w <= 1/2 at all points.
+  /// Returns nullopt if neither side is proven, or if the box may touch a triangle. A returned side is always correct.
   /// Method: away from the surface, the gradient of w is the Biot-Savart field of the surface's boundary. So between
   /// the centre and a point of the box, w changes by at most the half-diagonal times gradient_bound().
   [[nodiscard]] std::optional<bool> uniform_side(const Box3& box) const;
@@ -112,9 +112,9 @@ class WindingNumber {
   ///                time.
   [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
-  /// Returns true if w is constant along paths that cross no triangle. This holds if, at every edge, the numbers of
-  /// triangles that traverse the edge in the two directions are equal. Then w is an integer at all points that are not
-  /// on the surface. Edges with ends at the same positions count as the same edge.
+  /// Returns true if w is constant along paths that cross no triangle. This is the case if triangles traverse every
+  /// edge equally often in both directions. Then w is an integer at all points that are not on the surface. Edges with
+  /// ends at the same positions count as the same edge.
   [[nodiscard]] bool is_piecewise_constant() const;
 
   /// Returns the number of triangles.
