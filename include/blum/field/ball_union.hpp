@@ -29,15 +29,16 @@ struct Ball {
 /// @return       the field of these values. Outside of the union, the value of a node is its distance to the union.
 ///               Inside the union, the value is negative: minus the largest depth (radius - |x - centre|) of the node
 ///               in a ball. The depth is a lower bound on the distance to the boundary of the union. Values are
-///               computed in double and rounded to float. Field::site is empty, because site ids do not number balls.
+///               computed in double and rounded to float. Field::site is empty, because balls have no site ids.
 ///               Field::sign_rule is `balls`. The bytes are the same for any number of threads.
 /// @throws InvalidOption if a ball is out of range, or the list is empty.
 /// @throws InvalidGrid, OutOfMemory, Cancelled.
 /// Cost: about O(nodes log(nodes)), if no region of the grid has more balls than nodes. With 256^3 nodes on one core,
-/// 40,000 balls along a curved sheet take 1.5 s. At random positions, 300,000 balls take 2 s. If balls lie much closer
-/// together than nodes, the cost is proportional to the number of balls. It is 10 s for 300,000 points of a sphere. The
-/// worst case is O(nodes * balls), if all balls are equally far from all nodes. Method: the grid is split recursively
-/// into octants. For each octant, a list contains the balls that may be the closest to some point of the octant.
+/// 40,000 balls along a curved sheet take 1.5 s. With the same nodes, 300,000 balls at random positions take 2 s. If
+/// balls lie much closer together than nodes, the cost is proportional to the number of balls. For example, 300,000
+/// points of a sphere take 10 s. The worst case is O(nodes * balls), if all balls are equally far from all nodes.
+/// Method: the grid is split recursively into octants. For each octant, a list contains the balls that may be the
+/// closest to some point of the octant.
 [[nodiscard]] Field ball_union_field(std::span<const Ball> balls, const GridSpec& grid, const Context& context = {});
 
 }  // namespace blum

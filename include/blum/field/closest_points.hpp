@@ -36,30 +36,31 @@ struct Description<ClosestPointOptions> {
   static constexpr std::string_view name = "ClosestPointOptions";
   static constexpr std::string_view doc = "Options of closest points";
   static constexpr std::tuple members{
-      Member{"sign", &ClosestPointOptions::sign, "", "rule for the sign, as for fields; 'none' is fastest"},
-      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units", "largest distance that is searched",
-             Range::at_least(0)},
+      Member{"sign", &ClosestPointOptions::sign, "",
+             "rule for the sign of distances, as for fields; 'none' is fastest"},
+      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units",
+             "largest distance at which points of the mesh are found", Range::at_least(0)},
   };
 };
 
 /// Point of a mesh that is closest to a query.
 struct ClosestPoint {
   Vec3d point;          ///< on the mesh; the query itself if nothing lies within max_distance
-  double distance = 0;  ///< mesh units, negative inside when signed; infinite if nothing lies within max_distance
+  double distance = 0;  ///< mesh units, negative inside if signed; infinite if nothing lies within max_distance
   SiteId site;          ///< vertex, open edge or open face that contains the point, numbered as in SiteTable
   TriangleId triangle;  ///< smallest index of a triangle that contains the site; none() if no triangle does
 };
 
 /// Returns the unit vector along which the signed distance grows fastest. It points away from the surface if the query
-/// is outside, and towards the surface if the query is inside. On the medial axis, several vectors have this property,
-/// and one of them is returned. Returns nullopt if the query is on the surface (within rounding), or if no closest
-/// point was found. ClosestPointQuery::gradient() also has a value on the surface.
+/// is outside, and towards the surface if the query is inside. On the medial axis, the distance grows fastest along
+/// several vectors, and one of these is returned. Returns nullopt if the query is on the surface (within rounding), or
+/// if no closest point was found. ClosestPointQuery::gradient() also has a value on the surface.
 [[nodiscard]] std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found);
 
 /// Returns the weights of the corners of `found.triangle`, in their order. The closest point is the weighted mean of
 /// the corners. Each weight is at least 0, and their sum is 1 within rounding. If the closest point is a corner, the
 /// weight of that corner is 1 and the others are 0.
-/// @param mesh  the mesh in which `found` was found.
+/// @param mesh  the mesh on which `found` is the closest point.
 /// @return      nullopt if the closest point lies on no triangle.
 [[nodiscard]] std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found);
 
@@ -86,8 +87,8 @@ class ClosestPointQuery {
   /// unsigned. It takes longer if winding numbers are needed.
   explicit ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options = {},
                              const Context& context = {});
-  /// Does what the constructor and prepare_for_many() do. With several threads this takes less time, because both
-  /// structures are built at the same time.
+  /// Constructs a query object and prepares it with prepare_for_many(). With several threads, one call of for_many() is
+  /// faster than these two calls, because it builds both search structures at the same time.
   /// @param queries  approximate number of queries in all batches together.
   /// @throws as the constructor.
   [[nodiscard]] static ClosestPointQuery for_many(const MeshView& mesh, std::size_t queries,
@@ -109,9 +110,9 @@ class ClosestPointQuery {
 
   /// Returns the closest points to many queries, computed with threads. Each result is that of nearest(query), bit for
   /// bit, for any number of threads. If there are at least 4,096 queries, and no fewer queries than triangles, the
-  /// queries are ordered in space and answered together. The first such call builds a structure for this, which takes
-  /// 0.5 us and 450 bytes per triangle. A later call uses the structure if the number of its queries is at least 1,024,
-  /// and at least half the number of triangles.
+  /// queries are ordered in space and answered together. The first call with that many queries builds a search
+  /// structure, which takes 0.5 us and 450 bytes per triangle. A later call uses the structure if the number of its
+  /// queries is at least 1,024, and at least half the number of triangles.
   /// @throws InvalidOption with the index of the first query that is not finite or beyond the limits above.
   /// @throws Cancelled.
   [[nodiscard]] std::vector<ClosestPoint> nearest(std::span<const Vec3d> queries, const Context& context = {}) const;
@@ -123,10 +124,11 @@ class ClosestPointQuery {
   void for_each_nearest(std::span<const Vec3d> queries, FunctionRef<void(std::span<const FoundPoint>)> use,
                         const Context& context = {}) const;
 
-  /// Returns the gradient of the distance at a query, which has length 1. Off the surface, it is that of the function
-  /// blum::gradient(). On the surface (within rounding) the distance grows in several directions. The result is then
-  /// the normal of the closest site: that of the face, or the direction of the edge's or vertex's Pseudonormals. If
-  /// warnings() reports triangles that face the wrong way, the normals are those of the reversed triangles.
+  /// Returns the gradient of the distance at a query. The gradient has length 1. Off the surface, it is the result of
+  /// blum::gradient(). On the surface (within rounding), the distance grows in several directions. There, the result is
+  /// the unit normal of the closest site. For an edge or vertex, this is the direction of its pseudonormal
+  /// (Pseudonormals). If warnings() reports triangles that face the wrong way, the normals are those of the reversed
+  /// triangles.
   /// @param found  result of nearest(query).
   /// @return       nullopt if nothing was found, or if the site has no normal: segments, points, triangles without
   /// area. Cost: 0.01 us. The first query on the surface computes all normals, unless signs need them: O(triangles).
@@ -150,8 +152,7 @@ class ClosestPointQuery {
   void prepare_for_many(std::size_t queries, const Context& context = {});
 
   /// Finds, for each query, the triangles, segments and points of the mesh that are within a distance of the query.
-  /// Each of these primitives is returned with its point closest to the query. Distances are unsigned. The search uses
-  /// threads.
+  /// Each primitive is returned with its point closest to the query. Distances are unsigned. The search uses threads.
   /// @param distance  mesh units, >= 0. If it is infinite, all primitives are found. ClosestPointOptions::max_distance
   ///                  limits the search, too.
   /// @throws InvalidOption, also for the queries that nearest() rejects.
@@ -160,22 +161,22 @@ class ClosestPointQuery {
   [[nodiscard]] NearPrimitives within(std::span<const Vec3d> queries, double distance,
                                       const Context& context = {}) const;
 
-  /// Finds the k closest primitives of each query. A query gets fewer than k if fewer primitives lie within
-  /// max_distance.
+  /// Finds the k closest primitives of each query. For a query, fewer than k primitives are returned if fewer
+  /// primitives lie within max_distance.
   /// @throws as within().
   /// Cost: as within().
   [[nodiscard]] NearPrimitives nearest_primitives(std::span<const Vec3d> queries, std::size_t k,
                                                   const Context& context = {}) const;
 
-  /// Moves the vertices of the mesh. Results are then those of a new query object for the moved mesh, bit for bit.
-  /// Queries get slower as primitives that were neighbours move apart; a new object is then better. Must not run at the
-  /// same time as queries.
+  /// Moves the vertices of the mesh. Afterwards, results equal those of a new query object for the moved mesh, bit for
+  /// bit. Queries become slower if primitives that were neighbours move apart; construct a new object in this case.
+  /// Must not run at the same time as queries.
   /// @param vertices  the new positions, one for each vertex of the mesh.
-  /// @throws InvalidMesh. The object is then unchanged.
-  /// @throws Cancelled. After this, refit() must be called again before any other function.
-  /// Cost: O(n). For 100,000 triangles on two cores, this takes about 2 ms if unsigned. If signed, the rule for signs
-  /// is also chosen again, which takes as long as in the constructor. The structure for many queries is discarded. The
-  /// next call with many queries, or prepare_for_many(), builds it again.
+  /// @throws InvalidMesh. In this case, the object is unchanged.
+  /// @throws Cancelled. After Cancelled, refit() must be called again before any other function.
+  /// Cost: O(n). For 100,000 triangles on two cores, refit() takes about 2 ms if distances are unsigned. If distances
+  /// are signed, the rule for signs is also chosen again, which takes as long as in the constructor. The structure for
+  /// many queries is discarded. The next call with many queries, or prepare_for_many(), builds it again.
   void refit(std::span<const Vec3d> vertices, const Context& context = {});
 
   /// Return the rule that decides signs, and the reason for this rule (one sentence).
@@ -184,8 +185,8 @@ class ClosestPointQuery {
   /// Returns at most one warning about the signs. WarningCode::facing: parts of the mesh face the wrong way. The list
   /// is empty if distances are unsigned.
   [[nodiscard]] const std::vector<Warning>& warnings() const;
-  /// Returns true if the sign may change at points that are not on the surface. This happens with winding numbers if
-  /// the mesh has a boundary, and with normals if shells cross each other.
+  /// Returns true if the sign may change at points that are not on the surface. The sign may change with winding
+  /// numbers if the mesh has a boundary, and with normals if shells cross each other.
   [[nodiscard]] bool sign_may_jump() const;
 
  private:
@@ -208,9 +209,9 @@ class ClosestPointQuery {
 /// measured with 70,000 triangles. With a million queries, a search takes 0.2 us near the surface, and 0.3 us anywhere
 /// in the mesh's box. With fewer queries than triangles, a search takes 0.7 us if each query is near the previous
 /// query, along the surface. If the queries are in random order, a search takes 1.4 us near the surface, and 7 us
-/// anywhere in the box. Where many sites are nearly equally close, a search takes up to 20 us. The sign takes up to a
-/// third more for closed meshes, and 0.2 to 0.4 us more for open meshes. For soups, the sign takes the time of a
-/// winding number. Method: docs/theory/closest-points.md.
+/// anywhere in the box. Where many sites are nearly equally close, a search takes up to 20 us. Computing the sign adds
+/// up to a third of this time for closed meshes, and 0.2 to 0.4 us for open meshes. For soups, computing the sign takes
+/// as long as computing a winding number. Method: docs/theory/closest-points.md.
 [[nodiscard]] std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,
                                                        const ClosestPointOptions& options = {},
                                                        const Context& context = {});

@@ -23,8 +23,8 @@ struct Description<DeviceInfo> {
   static constexpr std::string_view name = "DeviceInfo";
   static constexpr std::string_view doc = "Available CUDA device";
   static constexpr std::tuple members{
-      Member{"device", &DeviceInfo::device, "", "name that selects it, for example cuda:0"},
-      Member{"name", &DeviceInfo::name, "", "name given by its maker"},
+      Member{"device", &DeviceInfo::device, "", "name that selects the device, for example cuda:0"},
+      Member{"name", &DeviceInfo::name, "", "name given by the manufacturer"},
       Member{"memory", &DeviceInfo::memory, "bytes", "total memory"}};
 };
 
@@ -40,7 +40,7 @@ struct Description<CudaDevices> {
   static constexpr std::string_view doc = "Available CUDA devices";
   static constexpr std::tuple members{
       Member{"devices", &CudaDevices::devices, "", "list of the devices"},
-      Member{"reason", &CudaDevices::reason, "", "reason in one sentence if there are none; else empty"}};
+      Member{"reason", &CudaDevices::reason, "", "reason in one sentence if there are no devices; otherwise empty"}};
 };
 
 /// Loads the CUDA module and returns the devices that it finds. Cost: the first call starts CUDA, which takes up to a

@@ -13,7 +13,7 @@
 namespace blum {
 
 /// Computes fields of deforming meshes in a CUDA device's memory, and leaves the fields in that memory, without copies.
-/// Between frames it does not wait for the device.
+/// Between frames, the solver does not wait for the device.
 ///
 /// The guarantees of FieldSolver hold. Streams are cudaStream_t; nullptr is the legacy default stream. The work that
 /// computes the inputs must be queued on the stream before the call. Work that is queued on the stream after the call
@@ -47,11 +47,12 @@ class DeviceFieldSolver {
   /// Returns the rule that decides the signs of fields with the current connectivity.
   [[nodiscard]] SignRule sign_rule() const;
 
-  /// Queues the computation of the field of the current connectivity with these vertices. This call does not wait for
-  /// the device. Exception: if 64 earlier calls are not completed yet, it waits for the oldest of these.
+  /// Queues the computation of the field of the mesh with these vertices and the current connectivity. This call does
+  /// not wait for the device. The only exception: if 64 earlier calls are not completed yet, this call waits for the
+  /// oldest of them.
   ///
   /// Two errors are known only on the device: vertices that are not finite, and extents that 32-bit distances cannot
-  /// represent. In these cases every node gets NaN and no site.
+  /// represent. After such an error, every node has the distance NaN and no site.
   /// @throws InvalidOption if set_connectivity() has not been called, a pointer is missing, or the element type is not
   /// supported.
   /// @throws InvalidMesh if the number of vertices is not that of the mesh passed to set_connectivity().
@@ -61,13 +62,13 @@ class DeviceFieldSolver {
   void compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream = nullptr);
 
   [[nodiscard]] DeviceProgress progress() const;
-  /// Makes a stream wait for the first `pieces` of the calls that progress() counts. Work that is queued on the stream
-  /// after follow() starts when these calls are completed.
+  /// Makes a stream wait until the first `pieces` of the calls that progress() counts are completed. Work that is
+  /// queued on the stream after follow() starts only then.
   void follow(std::uint64_t pieces, void* stream);
   /// Returns the device whose memory a pointer points to; nullopt for memory of the host.
   [[nodiscard]] std::optional<Device> device_of(const void* memory) const;
-  /// Makes stream `after` wait for stream `before`. Work that is queued on `after` from now on starts when all work
-  /// that is now queued on `before` is completed.
+  /// Makes stream `after` wait for stream `before`. Work that is queued on `after` after this call starts when all work
+  /// that was queued on `before` earlier is completed.
   void order(void* before, void* after);
 
  private:

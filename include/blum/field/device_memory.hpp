@@ -22,9 +22,9 @@ struct DeviceArrayView {
 /// View of a mesh in a CUDA device's memory. See MeshView.
 struct DeviceMeshView {
   DeviceArrayView vertices;   ///< n x 3, float32 or float64, mesh units
-  DeviceArrayView triangles;  ///< n x 3, int32, uint32 or int64; without rows the type is ignored
-  DeviceArrayView segments;   ///< n x 2, the types of `triangles`
-  DeviceArrayView points;     ///< n x 1, the types of `triangles`
+  DeviceArrayView triangles;  ///< n x 3, int32, uint32 or int64; the type is ignored if there are no rows
+  DeviceArrayView segments;   ///< n x 2, with the same types as `triangles`
+  DeviceArrayView points;     ///< n x 1, with the same types as `triangles`
 };
 
 /// Memory for a field on a CUDA device: arrays of one value per node of the grid, x fastest.
@@ -40,7 +40,7 @@ struct DeviceProgress {
   std::uint64_t finished = 0;
 };
 
-/// Memory of a CUDA device. Copies share the memory, and the last one frees it.
+/// Memory of a CUDA device. Copies share the memory, and the last copy frees it.
 class DeviceMemory {
  public:
   DeviceMemory() = default;

@@ -26,8 +26,8 @@ struct DistanceTransformOptions {
   /// Largest distance that is computed (half-width of the band), > 0, in the units of the image's spacing. Voxels with
   /// a larger distance get +-band and no site. Unset: no limit.
   std::optional<double> band = {};
-  /// True: the field contains the closest voxel of every voxel. False: the field contains no sites and takes half the
-  /// memory, also while it is computed. The distances do not depend on this option.
+  /// True: the field contains the closest voxel of every voxel. False: the field contains no sites, and takes half the
+  /// memory during and after the computation. The distances do not depend on this option.
   bool sites = true;
 };
 
@@ -62,11 +62,11 @@ struct Description<DistanceTransformOptions> {
 /// @throws InvalidImage, also if no voxel is selected, or if every voxel is selected in a signed transform.
 /// @throws InvalidImage if the image spans less than 1e-36 or more than 1e37, which 32-bit distances cannot represent.
 /// @throws InvalidOption, OutOfMemory, DeviceError, Cancelled.
-/// Cost: about O(voxels log(side)) for `side` voxels along the longest side, at worst twice that. The result takes 8
-/// bytes per voxel, or 4 without sites. The working memory takes 1/8 byte per voxel, and a few MiB per thread. Method:
-/// one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use no lower envelopes.
-/// Instead, they use that the index of the closest row is monotone along a column (Aggarwal 1987). These passes process
-/// many columns at a time.
+/// Cost: about O(voxels log(side)) for `side` voxels along the longest side. The worst case takes twice the usual time.
+/// The result takes 8 bytes per voxel, or 4 without sites. The working memory takes 1/8 byte per voxel, and a few MiB
+/// per thread. Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use
+/// no lower envelopes. Instead, these passes rely on the fact that the index of the closest row is monotone along a
+/// column (Aggarwal 1987). They process many columns at a time.
 [[nodiscard]] Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                        const Context& context = {});
 

@@ -28,10 +28,10 @@ namespace blum {
 enum class SignMode : std::uint8_t {
   automatic,  ///< `none` is chosen if the mesh has no triangles. `normals` is chosen if the mesh is closed,
               ///< consistently oriented and faces outwards, and no triangles cross or touch beyond shared corners and
-              ///< edges. The mesh must also have no free segments or points, and no triangle that is too flat to have a
-              ///< normal. Otherwise `winding` is chosen. The choice depends on the mesh, not on the grid. If the mesh
-              ///< is closed, triangles and shells that face the wrong way are first reversed, for the signs only, with
-              ///< a warning. So a closed mesh has the same inside however its triangles face.
+              ///< edges. The mesh must also have no free segments or points, and every triangle must have a normal
+              ///< (none is too flat). Otherwise `winding` is chosen. The choice depends on the mesh, not on the grid.
+              ///< If the mesh is closed, triangles and shells that face the wrong way are first reversed, for the signs
+              ///< only, with a warning. So the inside of a closed mesh does not depend on the way its triangles face.
   normals,    ///< The orientation of the mesh decides which side is inside. The mesh must be closed and consistently
               ///< oriented. Signs are exact, because crossings with the mesh are counted along the rows of the grid. If
               ///< shells cross or face different ways, angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide
@@ -127,7 +127,7 @@ struct Description<FieldOptions> {
       Member{"order", &FieldOptions::order, "",
              "number of closest sites per node, with their distances: 1, or (on the CPU only) 2", Range::between(1, 2)},
       Member{"second", &FieldOptions::second, "",
-             "for order 2, sites that may be second: without a common vertex with the closest site, or of another "
+             "rule for second sites of order 2: sites without a common vertex with the closest site, or of another "
              "object (connected part of the mesh)"},
   };
 };
@@ -153,12 +153,12 @@ struct Field {
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;  ///< reason for sign_rule, one sentence
   /// Warnings about the signs. WarningCode::facing: parts of the mesh face the wrong way. WarningCode::nothing_inside:
-  /// no node is inside the mesh. At most one. Empty for fields of images and of balls. Fields from NRRD files have the
-  /// warnings about frames that disagree instead, as in ImageFile.
+  /// no node is inside the mesh. The list has at most one of these warnings, and is empty for fields of images and of
+  /// balls. Fields read from NRRD files instead have warnings about coordinate frames that disagree, as in ImageFile.
   std::vector<Warning> warnings = {};
   Device device;                   ///< device that computed the field; never `automatic`
-  std::string device_reason = {};  ///< reason in one sentence if `automatic` was requested and the CPU was chosen; else
-                                   ///< empty
+  std::string device_reason = {};  ///< reason in one sentence if `automatic` was requested and the CPU was chosen;
+                                   ///< otherwise empty
   std::vector<PhaseTime> phases;
 
   [[nodiscard]] int order() const { return distance2.empty() ? 1 : 2; }
@@ -180,18 +180,20 @@ struct Field {
 ///              one with the smallest id is reported. The objects are the connected parts of the mesh; triangles and
 ///              segments connect their vertices.
 /// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, DeviceError, Cancelled.
-/// Cost: about O(nodes + sites log sites). The field takes 8 bytes per node, or 4 without sites. A CUDA device
-/// temporarily takes 8 bytes per node, also without sites, if the closest sites decide signs. This is the case with
-/// `normals` if shells cross or face different ways. Order 2 takes twice the memory of order 1. An unsigned field of
-/// order 2 takes three to four times as long as one of order 1. Method: docs/theory/fields.md (Sud 2006, ch. 2 and 4).
+/// Cost: about O(nodes + sites log sites). The field takes 8 bytes per node, or 4 without sites. If the closest sites
+/// decide signs, a CUDA device temporarily takes 8 bytes per node, also without sites. The closest sites decide signs
+/// with `normals` if shells cross or face different ways. Order 2 takes twice the memory of order 1. An unsigned field
+/// of order 2 takes three to four times as long as one of order 1. Method: docs/theory/fields.md (Sud 2006, ch. 2 and
+/// 4).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
                                    const Context& context = {});
-/// Computes the same field with objects that the caller defines, for SecondRule::other_object.
+/// Computes the field of a mesh with objects that the caller defines, for SecondRule::other_object.
 ///
 /// @param objects  one number per vertex of the mesh: the number of the object that the vertex belongs to. An edge or
 ///                 face belongs to the objects of all of its vertices. If the list is empty, the objects are the
 ///                 connected parts of the mesh.
-/// @throws InvalidOption, also if the numbers of objects and vertices differ, or if the options do not use objects.
+/// @throws InvalidOption, also if the numbers of objects and vertices differ, or if the options do not select order 2
+/// and SecondRule::other_object.
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, std::span<const std::uint32_t> objects,
                                    const FieldOptions& options, const Context& context = {});
 
@@ -210,12 +212,13 @@ class FieldSolver {
   /// is valid until the next call of compute() or take().
   /// @throws as distance_field(). After an error, the solver can still be used.
   const Field& compute(const MeshView& mesh);
-  /// Computes the field with a context for this frame alone, which can cancel it. The context's device is ignored.
+  /// Computes the field with a separate context, which can cancel the computation of this frame. The context's device
+  /// is ignored.
   const Field& compute(const MeshView& mesh, const Context& context);
 
   /// Sets the object of each vertex for the following frames. Before the first call, and after a call with an empty
   /// list, the objects are the connected parts of each mesh. The list is copied.
-  /// @throws InvalidOption if the options do not use objects.
+  /// @throws InvalidOption if the options do not select order 2 and SecondRule::other_object.
   void set_objects(std::span<const std::uint32_t> objects);
 
   /// Moves the last computed field out of the solver. The next frame gets new buffers.

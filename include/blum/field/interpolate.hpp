@@ -11,10 +11,10 @@
 
 namespace blum {
 
-/// Returns the distance at any points, interpolated trilinearly between the eight nodes around each point. The distance
-/// is not exact. Near edges and bisectors of the shape, its error is up to about half the diagonal of a cell. Here, a
-/// cell is the box between eight neighbouring nodes. Where the distance is smooth, the error is O(spacing^2).
-/// closest_points() is exact.
+/// Returns the distance at any points, interpolated trilinearly between the eight nodes around each point. The result
+/// is not exact; use closest_points() for exact distances. Near edges and bisectors of the shape, its error is up to
+/// about half the diagonal of a cell. Here, a cell is the box between eight neighbouring nodes. Where the distance is
+/// smooth, the error is O(spacing^2).
 ///
 /// @param field   field.grid must be valid. Nodes beyond a band have the distance +-band.
 /// @param points  finite, mesh units.
@@ -36,9 +36,9 @@ struct InterpolatedGradients {
 
 /// Returns the values and the gradients of the trilinear interpolation. The gradient has a length of about 1 where the
 /// distance is smooth, and is shorter near edges and bisectors. It jumps at the borders of cells. A point on a border
-/// gets the gradient of the cell with the larger indices. In the last layer, it gets that of the cell before the layer.
-/// The component of the gradient along an axis with a single layer is 0. Outside of the grid, the gradient is NaN. If a
-/// node of the cell is infinitely far, the gradient may be infinite or NaN.
+/// gets the gradient of the cell with the larger indices. A point in the last layer gets the gradient of the cell
+/// before this layer. The component of the gradient along an axis with a single layer is 0. Outside of the grid, the
+/// gradient is NaN. If a node of the cell is infinitely far, the gradient may be infinite or NaN.
 [[nodiscard]] InterpolatedGradients interpolate_with_gradient(const Field& field, std::span<const Vec3d> points,
                                                               const Context& context = {});
 

@@ -29,7 +29,7 @@ class BruteForce {
   explicit BruteForce(const MeshView& mesh);
 
   [[nodiscard]] const SiteTable& sites() const { return sites_; }
-  /// Returns the distance from a point to one site (its closure).
+  /// Returns the distance from a point to the closure of one site.
   [[nodiscard]] double site_distance(SiteId id, const Vec3d& query) const;
   /// Returns the closest of all sites. Vertices that no triangle, segment or point uses are not sites here. Cost:
   /// O(sites).
@@ -41,7 +41,7 @@ class BruteForce {
   /// Cost: O(sites).
   [[nodiscard]] std::optional<Nearest> second(const Vec3d& query, SiteId first,
                                               std::span<const std::uint32_t> labels = {}) const;
-  /// Returns true if a vertex of one site and a vertex of the other have the same label.
+  /// Returns true if a vertex of site a and a vertex of site b have the same label.
   [[nodiscard]] bool share_label(SiteId a, SiteId b, std::span<const std::uint32_t> labels = {}) const;
 
  private:

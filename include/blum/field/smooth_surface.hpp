@@ -44,7 +44,8 @@ struct SmoothSurface {
 
 /// Computes a smooth, closed surface between the selected voxels of an image and the others.
 ///
-/// - The centre of each selected voxel is inside. Every other centre is outside, and so is all space beyond the image.
+/// - The centre of each selected voxel is inside. The centre of every other voxel, and all space beyond the image, is
+///   outside.
 ///
 /// - The solid has the homotopy type of the union of the selected, closed voxels (betti_numbers(VoxelSet)). Voxels that
 ///   touch in an edge or a corner are joined.
@@ -55,13 +56,13 @@ struct SmoothSurface {
 ///
 /// - Taubin's filter (1995) smooths the surface and hardly shrinks it. Waves of the surface shorter than about 5 voxels
 ///   nearly vanish; longer waves remain. For round tubes with a radius of at least 1.5 voxels, the mean radius of the
-///   result is right within 0.1 voxels. The same accuracy holds for balls with a radius of at least 2 voxels.
+///   result is correct within 0.1 voxels. The same accuracy holds for balls with a radius of at least 2 voxels.
 ///
 /// @return      vertices in world coordinates. The bytes are the same for any number of threads.
 /// @throws InvalidImage, also if no voxel is selected.
 /// @throws InvalidOption, also for more than max_id_count vertices or triangles.
-/// @throws InvalidGrid if the spacing is too small relative to the coordinates of the origin. Rounded coordinates then
-/// make the surface cross itself.
+/// @throws InvalidGrid if the spacing is too small relative to the coordinates of the origin. With such a spacing,
+/// rounded coordinates make the surface cross itself.
 /// @throws OutOfMemory, Cancelled.
 /// Cost: O(voxels / 64), and about 5 microseconds of one core and 300 bytes for each face between a selected voxel and
 /// another one.

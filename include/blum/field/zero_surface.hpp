@@ -30,8 +30,8 @@ namespace blum {
 ///               interpolated linearly along the edge, equals the level. The vertex is at least a thousandth of the
 ///               edge's length away from both ends. So no two vertices coincide, even if a node is exactly at the
 ///               level. Where the exact surface is smooth, the error of the result is O(spacing^2) plus at most a
-///               thousandth of a cube's diagonal. In edges and corners of the exact surface, vertices are off by up to
-///               half a cube's diagonal. The bytes are the same for any number of threads.
+///               thousandth of a cube's diagonal. Near edges and corners of the exact surface, the error of vertices is
+///               up to half a cube's diagonal. The bytes are the same for any number of threads.
 /// @throws InvalidGrid, also for a grid with a single layer.
 /// @throws InvalidOption, also if the numbers of distances and nodes differ, or if a distance or the level is not
 /// finite.
@@ -42,8 +42,8 @@ namespace blum {
 [[nodiscard]] TriangleMesh zero_surface(const Field& field, double level = 0, const Context& context = {});
 
 /// Returns warnings about the surface that zero_surface() computes. WarningCode::left_out: the surface leaves the grid,
-/// so it is cut off there. WarningCode::coarse_grid: most nodes inside have both neighbours along some axis of the grid
-/// outside, so the shape is too thin for the grid.
+/// so it is cut off there. WarningCode::coarse_grid: for most nodes inside, both neighbours along some axis of the grid
+/// are outside, so the shape is too thin for the grid.
 /// @throws as zero_surface(). Cost: O(nodes), about 1 ns per node.
 [[nodiscard]] std::vector<Warning> level_warnings(const Field& field, double level = 0, const Context& context = {});
 

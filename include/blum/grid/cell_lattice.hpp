@@ -10,8 +10,8 @@
 
 namespace blum {
 
-/// Cell of the lattice: a vertex, edge, square or cube. Its number is 8 * node + axes. It extends one step from its
-/// node along each axis whose bit is set in `axes` (x 1, y 2, z 4).
+/// Cell of the lattice: a vertex, edge, square or cube. The number of a cell is 8 * node + axes. A cell extends one
+/// step from its node along each axis whose bit is set in `axes` (x 1, y 2, z 4).
 using Cell = std::uint32_t;
 using CellAxes = unsigned;
 
@@ -38,8 +38,8 @@ constexpr std::size_t normal_axis(Cell square) {
 }
 
 /// Lattice of the cubes of a box. Node (i, j, k) is the corner that the cubes (i, j, k) and (i - 1, j - 1, k - 1)
-/// share. The cell of this node with all three axes is cube (i, j, k). If the lattice is that of an image, the cubes
-/// are the voxels.
+/// share. The cell of node (i, j, k) that extends along all three axes is cube (i, j, k). In the lattice of an image,
+/// the cubes are the voxels.
 class CellLattice {
  public:
   CellLattice() = default;
@@ -66,7 +66,8 @@ class CellLattice {
     return {static_cast<Cell>(above - 8 * stride_[normal_axis(square)]), above};
   }
 
-  /// Calls visit(face) for each face of a given cell: a cell of one dimension less in its border.
+  /// Calls visit(face) for each face of a given cell. A face is a cell of one dimension less in the border of the given
+  /// cell.
   template <class Visit>
   void for_each_face(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -76,8 +77,8 @@ class CellLattice {
       visit(static_cast<Cell>((cell ^ bit) + 8 * stride_[axis]));
     }
   }
-  /// Calls visit(coface) for each cell that has a given cell in its border and one dimension more than that cell. All
-  /// these cofaces must be in the lattice.
+  /// Calls visit(coface) for each coface of a given cell. A coface is a cell of one dimension more, with the given cell
+  /// in its border. All cofaces must be in the lattice.
   template <class Visit>
   void for_each_coface(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {

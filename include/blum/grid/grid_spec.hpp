@@ -13,8 +13,8 @@
 namespace blum {
 
 /// Regular grid of nodes. Node (i, j, k) lies at origin + direction * (i * spacing.x, j * spacing.y, k * spacing.z).
-/// Values are stored with i (x) fastest, as in a C-ordered array that is indexed [z, y, x]. With a grid that has one
-/// layer along an axis, a field is two-dimensional.
+/// Values are stored with i (x) fastest, as in a C-ordered array that is indexed [z, y, x]. If a grid has one layer
+/// along an axis, fields on it are two-dimensional.
 struct GridSpec {
   Vec3d origin{};                             ///< position of node (0, 0, 0), in mesh units
   Vec3d spacing{1, 1, 1};                     ///< distance between neighbouring nodes, > 0, in mesh units
@@ -64,15 +64,15 @@ void validate(const GridSpec& grid);
 /// @throws InvalidOption if a parameter is out of range.
 [[nodiscard]] GridSpec grid_around(const Box3& shape_bounds, int resolution = 256, double padding = 0.1);
 
-/// Returns the grid of grid_around() for a given spacing instead of a resolution. @param spacing  > 0, in mesh units.
+/// Does the same as grid_around(), with a given spacing instead of a resolution. @param spacing > 0, in mesh units.
 [[nodiscard]] GridSpec grid_around_with_spacing(const Box3& shape_bounds, double spacing, double padding = 0.1);
 
 /// Returns a grid over a box, without padding. The longest side has `resolution` nodes and is covered exactly. The
 /// other sides get nodes as in grid_around(). A side of length zero gets one layer. @throws InvalidGrid, InvalidOption.
 [[nodiscard]] GridSpec grid_in(const Box3& box, int resolution = 256);
-/// Returns the grid of grid_in() for a given spacing. If a side is not a whole number of steps long, the grid is
-/// centred on the side, with the next larger number of steps. The grid then extends beyond the box by less than half a
-/// step at each end.
+/// Does the same as grid_in(), with a given spacing instead of a resolution. If a side is not a whole number of steps
+/// long, the grid is centred on the side, with the next larger number of steps. The grid then extends beyond the box by
+/// less than half a step at each end.
 [[nodiscard]] GridSpec grid_in_with_spacing(const Box3& box, double spacing);
 
 }  // namespace blum

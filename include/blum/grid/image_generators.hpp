@@ -24,7 +24,7 @@ struct BallImageOptions {
   double radius = 0.7;      ///< radius of the ball, as a fraction of half the shortest side of the image, 0.3 to 0.9
   double inner_radius = 0;  ///< radius of a void, as a fraction of the ball's radius, 0 to 0.7; 0: no void
 };
-/// Makes a ball in the middle of the image. It is round in world units. If the inner radius is not 0, the ball is
+/// Makes a ball in the middle of the image. The ball is round in world units. If the inner radius is not 0, the ball is
 /// hollow. Values are uint8: 0, 1. The ball and the void must not be smaller than a voxel. The wall around the void
 /// must be at least three voxels thick.
 [[nodiscard]] VoxelImage make_ball_image(const BallImageOptions& options = {});
@@ -34,10 +34,11 @@ struct TubeImageOptions {
   int pitch = 20;          ///< distance between neighbouring nodes in voxels, 6 to 500
   double radius = 4;       ///< radius of the tubes between neighbouring nodes, in voxels, 1 to pitch / 2 - 2
   Vec3d spacing{1, 1, 1};  ///< > 0, in world units
-  bool labelled = false;   ///< true: tubes along x, y, z have labels 1, 2, 3 (in several tubes, the smallest); false:
-                           ///< all have label 1
+  bool labelled = false;   ///< true: tubes along x, y, z have labels 1, 2, 3 (voxels in several tubes: the smallest);
+                           ///< false: all tubes have label 1
 };
-/// Makes a network of tubes along the lines of a cubic lattice. The tubes are round in voxels. Values are uint8.
+/// Makes a network of tubes along the lines of a cubic lattice. The tubes are round if lengths are measured in voxels.
+/// Values are uint8.
 [[nodiscard]] VoxelImage make_tube_image(const TubeImageOptions& options = {});
 
 struct BallsImageOptions {
@@ -55,7 +56,8 @@ struct NoiseImageOptions {
   Vec3d spacing{1, 1, 1};  ///< > 0, in world units
   std::uint64_t seed = 1;
 };
-/// Makes an image in which each voxel is set or not at random, also at the border. Values are uint8: 0, 1.
+/// Makes an image of random voxels. Each voxel, also at the border, is 1 with a probability of `density`, otherwise 0.
+/// Values are uint8.
 [[nodiscard]] VoxelImage make_noise_image(const NoiseImageOptions& options = {});
 
 /// Kind of image that Blum generates.

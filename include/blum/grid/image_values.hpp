@@ -47,8 +47,8 @@ struct ImageValues {
   std::optional<std::array<double, 2>> range = {};  ///< smallest and largest value; unset if all voxels are NaN
   std::uint64_t nonzero = 0;                        ///< number of voxels that are neither 0 nor NaN
   std::uint64_t not_numbers = 0;                    ///< number of voxels that are NaN
-  /// Number of distinct values. Unset if there are more than 100,000, or if one of them cannot be a label. Labels are
-  /// whole numbers that fit int64. In images of floating-point numbers, they must be at most 2^53.
+  /// Number of distinct values. Unset if there are more than 100,000 distinct values, or if a value cannot be a label.
+  /// Labels are whole numbers that fit int64. In images of floating-point numbers, labels must be at most 2^53.
   std::optional<std::uint64_t> distinct = {};
   std::vector<LabelFacts> labels = {};  ///< the most frequent values, in falling order of their number of voxels; empty
                                         ///< if `distinct` is unset
@@ -77,8 +77,8 @@ struct Description<ImageValues> {
 [[nodiscard]] ImageValues image_values(const VoxelImageView& image, std::size_t most_labels = 20,
                                        const Context& context = {});
 
-/// Largest distance of a value from a whole number at which the value still counts as a label. A scale in single
-/// precision, as in NIfTI files, moves labels up to 65,535 by less.
+/// Largest distance of a value from a whole number at which the value still counts as a label. A scale factor in single
+/// precision, as in NIfTI files, changes labels up to 65,535 by less than this tolerance.
 inline constexpr double label_tolerance = 0.01;
 
 /// Values of an image of labels, rounded to whole numbers.
@@ -87,14 +87,14 @@ struct RoundedLabels {
   Warning warning;            ///< WarningCode::rounded
 };
 
-/// Rounds the values of an image to labels, if that is necessary and safe. It is necessary if values are not whole
-/// numbers, and safe if all values are within label_tolerance of whole numbers of at most 2^53. NaN stays NaN.
-/// Functions that select a label compare exactly, so pass them an image with the rounded values.
+/// Rounds the values of an image to labels, if rounding is necessary and safe. Rounding is necessary if values are not
+/// whole numbers. Rounding is safe if all values are within label_tolerance of whole numbers of at most 2^53. NaN stays
+/// NaN. Functions that select a label compare exactly, so pass them an image with the rounded values.
 /// @param image   must pass validate(image).
-/// @param labels  labels that are asked for; empty: all.
+/// @param labels  requested labels; if empty, all labels are requested.
 /// @return        nullopt if no value has to be rounded, or if rounding is not safe.
-/// @throws InvalidImage if rounding is not safe, and a voxel has nearly the value of one of the labels, but not
-/// exactly. To select such voxels would be a guess.
+/// @throws InvalidImage if rounding is not safe, and the value of a voxel is close to a requested label, but not equal
+/// to it. Selecting such voxels would be a guess.
 /// @throws Cancelled.
 /// Cost: one pass over images of floating-point numbers. Other images cost nothing.
 [[nodiscard]] std::optional<RoundedLabels> rounded_labels(const VoxelImageView& image,

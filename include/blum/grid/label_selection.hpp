@@ -22,8 +22,8 @@ struct LabelSelection {
 
   [[nodiscard]] static constexpr LabelSelection of_label(std::int64_t value) { return {Rule::label, value, 0}; }
   [[nodiscard]] static constexpr LabelSelection at_least(double value) { return {Rule::threshold, 0, value}; }
-  /// Returns the selection of the option that is set, or Rule::nonzero if neither is set. @throws InvalidOption if both
-  /// options are set.
+  /// Returns the selection by label or by threshold, whichever is set; Rule::nonzero if neither is set. @throws
+  /// InvalidOption if both options are set.
   [[nodiscard]] static LabelSelection of(const std::optional<std::int64_t>& label,
                                          const std::optional<double>& threshold) {
     exclude_both(label.has_value(), threshold.has_value());

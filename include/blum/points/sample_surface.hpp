@@ -23,7 +23,8 @@ struct SampleOptions {
   /// Seed of the random numbers. Different seeds give different points.
   std::uint64_t seed = 0;
   /// True: points are evenly spaced (blue noise). Five times the requested number of points are drawn, and sample
-  /// elimination (Yuksel 2015) keeps the requested number of them. This takes 3 us per point instead of 0.1 us.
+  /// elimination (Yuksel 2015) keeps the requested number. Blue noise takes 3 us per point; without it, a point takes
+  /// 0.1 us.
   bool blue_noise = false;
 };
 
@@ -41,7 +42,8 @@ struct Description<SampleOptions> {
 /// Points of a surface. Entry k of each list belongs to point k.
 struct SurfaceSamples {
   std::vector<Vec3d> points;          ///< mesh units
-  std::vector<Vec3d> normals;         ///< unit normal of the triangle, around which its corners run counter-clockwise
+  std::vector<Vec3d> normals;         ///< unit normal of the triangle, on the side from which its corners run
+                                      ///< counter-clockwise
   std::vector<TriangleId> triangles;  ///< triangle that contains the point
 };
 
@@ -64,7 +66,7 @@ struct NearSampleOptions {
   /// mesh's bounds, with all sides multiplied by 1.1 about its centre.
   double in_box = 0;
   std::uint64_t seed = 0;
-  /// Method that finds the signs, as for closest_points().
+  /// Rule for the signs of distances, as for closest_points().
   SignMode sign = SignMode::automatic;
 };
 
@@ -76,21 +78,21 @@ struct Description<NearSampleOptions> {
       Member{"sigma", &NearSampleOptions::sigma, "mesh units; default: 1/100 of the diagonal of the mesh's box",
              "standard deviation of the offset from the surface along each axis", Range::positive()},
       Member{"in_box", &NearSampleOptions::in_box, "",
-             "fraction of the points that are not near the surface but uniform in the mesh's box, with sides "
-             "multiplied by 1.1; they come last",
+             "fraction of the points that are uniform in the mesh's box (sides times 1.1) instead of near the surface; "
+             "these points come last",
              Range::between(0, 1)},
       Member{"seed", &NearSampleOptions::seed, "", "seed of the random numbers", Range::between(0, 0x1p62)},
-      Member{"sign", &NearSampleOptions::sign, "", "rule for signs, as for closest points"},
+      Member{"sign", &NearSampleOptions::sign, "", "rule for the sign of distances, as for closest points"},
   };
 };
 
-/// Points near a surface, and for each point the closest point of the surface. Models that learn signed distances are
-/// trained with such points.
+/// Points near a surface, and for each point the closest point of the surface. Such points are training data for models
+/// that learn signed distances.
 struct NearSamples {
   std::vector<Vec3d> points;          ///< mesh units
   std::vector<ClosestPoint> closest;  ///< for each point: the closest point of the surface, with the signed distance
   SignRule sign_rule = SignRule::none;
-  std::string sign_reason;        ///< reason for this rule, one sentence
+  std::string sign_reason;        ///< reason for sign_rule, one sentence
   std::vector<Warning> warnings;  ///< as ClosestPointQuery::warnings()
 };
 

@@ -15,8 +15,9 @@
 /// faces away from the solid. ShapeInfo::betti gives its topology. The same options give the same mesh on every
 /// platform, except for the last bits of sines and cosines.
 ///
-/// All functions throw InvalidOption if options contradict each other or the ranges given here. They also throw
-/// InvalidOption if the mesh would have more than 50 million triangles. Cost: O(triangles), unless stated otherwise.
+/// All functions throw InvalidOption if options contradict each other or are out of the ranges given here. They also
+/// throw InvalidOption if the mesh would have more than 50 million triangles. Cost: O(triangles), unless stated
+/// otherwise.
 namespace blum {
 
 // ---- Round shapes (generators_round.cpp) ----
@@ -113,8 +114,8 @@ struct OrganicOptions {
   std::uint64_t seed = 1;
 };
 /// Makes an animal-like body (ears, paws, tail, rough skin), star-shaped about the origin. Its size and roughness are
-/// those of a scanned model. A body with holes is an open surface, as scans are. Vertices inside the holes stay in the
-/// mesh, although no triangle uses them.
+/// those of a scanned model. With holes, the body is an open surface, like a scan. Vertices inside the holes stay in
+/// the mesh, although no triangle uses them.
 [[nodiscard]] TriangleMesh make_organic(const OrganicOptions& options = {});
 
 // ---- Machined shapes (generators_cad.cpp, generators_blocks.cpp) ----
@@ -147,7 +148,8 @@ struct NestedShellsOptions {
   double radius = 1;  ///< radius of the outermost sphere, > 0; radii decrease inwards in equal steps
   int frequency = 8;  ///< see SphereOptions
 };
-/// Makes nested spheres that face outwards and inwards alternately: from outside to inside solid, void, solid, ...
+/// Makes nested spheres that face outwards and inwards alternately. From outside to inside, they bound solid, void,
+/// solid, ...
 [[nodiscard]] TriangleMesh make_nested_shells(const NestedShellsOptions& options = {});
 
 struct BodiesOptions {
@@ -172,11 +174,11 @@ struct PlateOptions {
 [[nodiscard]] TriangleMesh make_plate(const PlateOptions& options = {});
 
 struct BracketOptions {
-  double length = 3;       ///< length of the foot, along x, > 0
-  double height = 3;       ///< height of the wall, along z, > 0
-  double width = 3;        ///< along y, > 0
-  double thickness = 0.4;  ///< thickness of foot and wall, > 0, below half of length and half of height
-  int holes = 2;  ///< number of holes in the foot, equal to the number in the wall, 0 to 10,000; the genus is 2 * holes
+  double length = 3;         ///< length of the foot, along x, > 0
+  double height = 3;         ///< height of the wall, along z, > 0
+  double width = 3;          ///< along y, > 0
+  double thickness = 0.4;    ///< thickness of foot and wall, > 0, below half of length and half of height
+  int holes = 2;             ///< number of holes in the foot, and in the wall, 0 to 10,000; the genus is 2 * holes
   double hole_radius = 0.3;  ///< > 0; holes must fit between the ribs and the borders of foot and wall
   bool ribs = true;          ///< true: triangular ribs between foot and wall, at both sides and between holes
   int hole_segments = 32;    ///< sides of each hole, >= 4, a multiple of 4

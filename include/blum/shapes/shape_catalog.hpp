@@ -37,8 +37,8 @@ struct ShapeInfo {
 [[nodiscard]] const ShapeInfo& find_shape(std::string_view name);
 
 /// Returns values for all parameters of a shape: the given ones, and defaults for the others.
-/// @throws InvalidOption if a parameter is unknown or out of range, or if it must be a whole number and is not. The
-/// message lists the shape's parameters and ranges.
+/// @throws InvalidOption if a parameter is unknown or out of range, or if an integer parameter is not a whole number.
+/// The message lists the shape's parameters and ranges.
 [[nodiscard]] ShapeParameters complete_parameters(const ShapeInfo& shape, const ShapeParameters& given);
 
 /// Generates the shape with the given name; generators.hpp describes the shapes. Coordinates are the same on every

@@ -28,8 +28,8 @@ struct CellularModelOptions {
   int resolution = 64;
   /// Side of a cube, > 0, mesh units. Replaces `resolution`.
   std::optional<double> spacing = {};
-  /// Shift of the grid along each axis, in sides of a cube, 0 to 1. If the test fails in a cube, it may pass with
-  /// another shift.
+  /// Shift of the grid along each axis, in sides of a cube, 0 to 1. If a cube fails the test, another shift may avoid
+  /// this.
   double shift = 0.381966;
   /// Largest number of successive splits that lead from a failing cube to a box, 0 to 200.
   int most_splits = 60;
@@ -45,18 +45,19 @@ struct Description<CellularModelOptions> {
       Member{"spacing", &CellularModelOptions::spacing, "mesh units", "side of a cube, instead of the resolution",
              Range::positive()},
       Member{"shift", &CellularModelOptions::shift, "cubes",
-             "shift of the grid along each axis; if a cube fails the test, another may help", Range::between(0, 1)},
-      Member{"most_splits", &CellularModelOptions::most_splits, "", "most successive splits of a cube that fails",
-             Range::between(0, 200)},
+             "shift of the grid along each axis; another shift may help if a cube fails the test",
+             Range::between(0, 1)},
+      Member{"most_splits", &CellularModelOptions::most_splits, "",
+             "largest number of successive splits of a cube that fails the test", Range::between(0, 200)},
   };
 };
 
 /// Reason why a box does not pass the test of CellularModel.
 enum class ModelObstacle : std::uint8_t {
-  hole_in_square,  ///< In a side of the box, the solid has a hole, for example the cross-section of an empty needle
-                   ///< that no split opens.
-  slanted_needle,  ///< As `hole_in_square`, but the needle is slanted, and more than ModelFailure::most_cuts splits
-                   ///< would be needed to open it.
+  hole_in_square,  ///< The cross-section of the solid with a side of the box has a hole. For example, it is the
+                   ///< cross-section of an empty needle that no split opens.
+  slanted_needle,  ///< The same as `hole_in_square`, but opening the slanted needle would need more than
+                   ///< ModelFailure::most_cuts splits.
   handle,          ///< A component of the solid in the box has a tunnel, or an inner boundary.
   void_in_cube     ///< A void lies wholly inside the box.
 };
@@ -78,8 +79,9 @@ struct ModelFailure {
   double cuts = 0;  ///< For `slanted_needle`: number of splits that would open the needle in this box. A box of half
                     ///< the size needs half this number.
 
-  /// Largest number of splits of a box that are made to open a slanted needle. If more splits are needed, none is made.
-  /// Each split opens a part of the needle. The length of this part is the needle's width divided by its slant.
+  /// Largest number of splits of a box that are made to open a slanted needle. If more splits are needed, the box is
+  /// not split. Each split opens a part of the needle. The length of this part is the needle's width divided by its
+  /// slant.
   static constexpr double most_cuts = 8192;
 };
 
@@ -91,7 +93,8 @@ struct Description<ModelFailure> {
       Member{"low", &ModelFailure::low, "mesh units", "corner of the box"},
       Member{"high", &ModelFailure::high, "mesh units", "opposite corner"},
       Member{"obstacle", &ModelFailure::obstacle, "", "reason why the component is not contractible"},
-      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: number of splits that would open it in this box"},
+      Member{"cuts", &ModelFailure::cuts, "",
+             "for a slanted needle: number of splits that would open the needle in this box"},
   };
 };
 
@@ -115,11 +118,11 @@ struct Description<CellularModelReport> {
   static constexpr std::string_view doc = "Counts of a cellular model, and the result of its check";
   static constexpr std::tuple members{
       Member{"passes", &CellularModelReport::passes, "",
-             "true if every component in a cell is contractible: then the model has the solid's homotopy type"},
+             "true if every component in a cell is contractible; the model then has the solid's homotopy type"},
       Member{"grid", &CellularModelReport::grid, "", "grid whose nodes are the corners of the cubes"},
       Member{"cut_cubes", &CellularModelReport::cut_cubes, "", "cubes that the surface meets"},
       Member{"failing_cubes", &CellularModelReport::failing_cubes, "", "number of cubes that had to be split"},
-      Member{"boxes", &CellularModelReport::boxes, "", "number of boxes from these splits"},
+      Member{"boxes", &CellularModelReport::boxes, "", "number of boxes into which failing cubes were split"},
       Member{"splits", &CellularModelReport::splits, "", "largest number of successive splits"},
       Member{"cells", &CellularModelReport::cells, "", "vertices, edges, polygons, polyhedra of the model"},
       Member{"euler", &CellularModelReport::euler, "", "alternating sum of the cells: components - tunnels + voids"},
@@ -156,7 +159,7 @@ class CellularModel {
   struct Data;
   explicit CellularModel(std::shared_ptr<const Data> data);
   /// Computes Solid::model().
-  /// @param groups  number of the group of each body. Bodies of one group do not touch each other.
+  /// @param groups  group number of each body. Bodies of one group do not touch each other.
   static CellularModel of(const Solid& solid, const std::vector<std::uint32_t>& groups,
                           const CellularModelOptions& options, const Context& context);
   std::shared_ptr<const Data> data_;

@@ -22,8 +22,8 @@ struct CleanReport {
   std::size_t vertices = 0;         ///< Vertices of the result.
   std::size_t triangles_before = 0;
   std::size_t triangles = 0;
-  std::size_t reversed_triangles = 0;  ///< Triangles that faced another way than most of their shell.
-  std::size_t reversed_shells = 0;     ///< Shells that faced the solid.
+  std::size_t reversed_triangles = 0;  ///< Triangles that faced against the majority of their shell.
+  std::size_t reversed_shells = 0;     ///< Shells that faced into the solid.
   std::size_t collapses = 0;           ///< Vertices that were moved onto a neighbour.
   std::size_t flips = 0;               ///< Edges that were flipped.
   /// Upper bound on the Hausdorff distance between input and result, rounding included, mesh units. It is at most the
@@ -45,11 +45,12 @@ struct Description<CleanReport> {
       Member{"triangles_before", &CleanReport::triangles_before, "", "triangles of the mesh"},
       Member{"triangles", &CleanReport::triangles, "", "triangles of the result"},
       Member{"reversed_triangles", &CleanReport::reversed_triangles, "",
-             "triangles that faced another way than most of their shell"},
-      Member{"reversed_shells", &CleanReport::reversed_shells, "", "shells that faced the solid"},
+             "triangles that faced against the majority of their shell"},
+      Member{"reversed_shells", &CleanReport::reversed_shells, "", "shells that faced into the solid"},
       Member{"collapses", &CleanReport::collapses, "", "vertices that were moved onto a neighbour"},
       Member{"flips", &CleanReport::flips, "", "edges that were flipped"},
-      Member{"deviation", &CleanReport::deviation, "mesh units", "bound on the distance between mesh and result"},
+      Member{"deviation", &CleanReport::deviation, "mesh units",
+             "upper bound on the Hausdorff distance between mesh and result"},
       Member{"smallest_height_before", &CleanReport::smallest_height_before, "mesh units",
              "smallest height of a triangle of the mesh above its longest side"},
       Member{"smallest_height", &CleanReport::smallest_height, "mesh units",
@@ -62,7 +63,7 @@ struct Description<CleanReport> {
 
 /// Cleaned mesh.
 struct CleanedMesh {
-  TriangleMesh mesh;  ///< First vertices of the input, in the input's order, then new vertices at crossings.
+  TriangleMesh mesh;  ///< Vertices of the input come first, in the input's order. New vertices at crossings follow.
   /// For each vertex of `mesh`: its index in the input, ascending; SolidBody::no_vertex at crossings.
   std::vector<std::uint32_t> vertex_of;
   CleanReport report;
@@ -76,21 +77,21 @@ struct CleanedMesh {
 ///
 /// Steps are made one by one. The next step is always the one that changes the surface least. A step moves a vertex
 /// onto a neighbour, or flips the longest side of a flat triangle. The surface stays homeomorphic to the input (the
-/// link condition). Each step has a bound on how far it moves the surface. Bounds of successive steps at the same place
-/// are added. Exact arithmetic checks that no new triangle crosses or touches another triangle. Steps that would fold
-/// the surface over are not made. If no needle results, a step may lower the smallest height of the triangles around
-/// it, but at most to a quarter. Finally the whole result is checked again. No vertex of the result has a new position.
-/// Method and proof of the bound: docs/theory/solid.md.
+/// link condition). Each step has a bound on how far it moves the surface. Bounds of successive steps that move the
+/// same part of the surface are added. Exact arithmetic checks that no new triangle crosses or touches another
+/// triangle. Steps that would fold the surface over are not made. A step that makes no needle may lower the smallest
+/// height of the triangles around it to a quarter of its value, but not further. Finally the whole result is checked
+/// again. All vertices of the result keep their positions. Method and proof of the bound: docs/theory/solid.md.
 ///
 /// @param solid      polyhedron whose bodies do not touch. Solid::surface() is cleaned. Its coordinates must be 0, or
 ///                   have magnitudes of 1e-45 to 1e45.
 /// @param tolerance  largest distance between surface and result, in both directions, mesh units. It must be at least
 ///                   1e-12 times the diagonal of the box around the surface, and at most that diagonal.
-/// @return           the same for any number of threads.
+/// @return           the cleaned mesh; it is the same for any number of threads.
 /// @throws InvalidMesh if the solid is not a polyhedron whose bodies do not touch. InvalidOption if the tolerance is
-/// out of range. Cancelled. Error if the check of the result fails, which would be an error in Blum.
-/// Cost: per triangle, on one core, about 12 microseconds if most triangles are removed, 3 microseconds if none are;
-/// 500 bytes of memory.
+/// out of range. Cancelled. Error if the check of the result fails, which would be a bug in Blum.
+/// Cost: 500 bytes of memory per triangle. On one core, about 12 microseconds per triangle if most triangles are
+/// removed, and 3 microseconds if none are removed.
 [[nodiscard]] CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context = {});
 
 /// Cleans the surface of the solid that a mesh bounds, found by Solid::of().

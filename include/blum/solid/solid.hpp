@@ -32,12 +32,13 @@ namespace blum {
 
 /// Closed shell of the surface of a polyhedron.
 struct SolidShell {
-  std::uint32_t body = 0;   ///< Body whose outer shell this is, or in which this shell bounds a void.
-  std::uint32_t depth = 0;  ///< Number of other shells that contain this one. If odd, this shell bounds a void.
-  std::optional<std::uint32_t> parent = {};  ///< Innermost shell that contains this one, if any does.
+  std::uint32_t body = 0;   ///< Body that this shell bounds, as its outer shell or as the boundary of a void.
+  std::uint32_t depth = 0;  ///< Number of other shells that contain this shell. If the number is odd, this shell bounds
+                            ///< a void.
+  std::optional<std::uint32_t> parent = {};  ///< Innermost other shell that contains this shell; unset if none does.
   std::int64_t genus = 0;                    ///< Number of handles.
   double volume = 0;                         ///< Enclosed volume, > 0, cubic mesh units.
-  bool is_reversed = false;                  ///< True if the shell faced the solid in the input.
+  bool is_reversed = false;                  ///< True if the shell faced into the solid in the input.
 };
 
 template <>
@@ -45,12 +46,14 @@ struct Description<SolidShell> {
   static constexpr std::string_view name = "SolidShell";
   static constexpr std::string_view doc = "Closed shell of the surface of a polyhedron";
   static constexpr std::tuple members{
-      Member{"body", &SolidShell::body, "", "body whose outer shell this is, or in which it bounds a void"},
-      Member{"depth", &SolidShell::depth, "", "number of other shells that contain it; if odd, it bounds a void"},
+      Member{"body", &SolidShell::body, "",
+             "body that this shell bounds, as its outer shell or as the boundary of a void"},
+      Member{"depth", &SolidShell::depth, "",
+             "number of other shells that contain this shell; if the number is odd, this shell bounds a void"},
       Member{"parent", &SolidShell::parent, "", "innermost other shell that contains this one"},
       Member{"genus", &SolidShell::genus, "", "number of handles"},
       Member{"volume", &SolidShell::volume, "cubic mesh units", "enclosed volume, > 0"},
-      Member{"is_reversed", &SolidShell::is_reversed, "", "true if it faced the solid in the input"}};
+      Member{"is_reversed", &SolidShell::is_reversed, "", "true if the shell faced into the solid in the input"}};
 };
 
 /// Body of a mesh: a connected part of a polyhedron, or all of a solid with SolidRule::winding. It stores the triangles
@@ -94,11 +97,11 @@ class Solid {
   /// Returns the solid of a mesh.
   ///
   /// A closed, manifold mesh that does not cross itself bounds a polyhedron (SolidRule::polyhedron). Each outer shell,
-  /// with the shells of the voids in it, bounds one body. Bodies may touch each other. Triangles that face another way
-  /// than most of their shell are reversed, and so are shells that face the solid. If a closed mesh crosses, overlaps
-  /// or touches itself, resolve_crossings() is called. If this succeeds, the solid is the polyhedron of the points with
-  /// a winding number of 1 or more. For all other meshes, the solid consists of the points with a winding number above
-  /// 1/2 (SolidRule::winding). The mesh is not needed after the call.
+  /// with the shells of the voids in it, bounds one body. Bodies may touch each other. Triangles that face against the
+  /// majority of their shell are reversed. Shells that face into the solid are reversed, too. If a closed mesh crosses,
+  /// overlaps or touches itself, resolve_crossings() is called. If it resolves the crossings, the solid is the
+  /// polyhedron of the points with a winding number of 1 or more. For all other meshes, the solid consists of the
+  /// points with a winding number above 1/2 (SolidRule::winding). The mesh may be destroyed after the call.
   /// @throws InvalidMesh if validate(mesh) fails or no triangle exists; Cancelled.
   /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh. If the mesh crosses itself, also
   /// that of resolve_crossings(), and of topology() and find_self_intersections() for its result.
@@ -110,7 +113,7 @@ class Solid {
                                 const Context& context = {});
 
   [[nodiscard]] SolidRule rule() const;
-  /// Returns one sentence: the reason for this rule.
+  /// Returns the reason for rule() in one sentence.
   [[nodiscard]] const std::string& reason() const;
 
   /// Returns an empty string if the solid is a polyhedron whose bodies do not touch. Otherwise returns one sentence
@@ -119,12 +122,12 @@ class Solid {
   [[nodiscard]] const std::string& problem() const;
 
   /// Returns the numbers of components, tunnels and voids of the whole solid. Returns nullopt for SolidRule::winding,
-  /// because these numbers then depend on a grid of voxels.
+  /// because the numbers of such a solid depend on a grid of voxels.
   [[nodiscard]] std::optional<BettiNumbers> betti() const;
-  /// Returns the bodies. Those of a polyhedron face outwards. SolidRule::winding: one body with all triangles. Images:
+  /// Returns the bodies. Bodies of a polyhedron face outwards. SolidRule::winding: one body with all triangles. Images:
   /// none.
   [[nodiscard]] std::span<const SolidBody> bodies() const&;
-  std::span<const SolidBody> bodies() const&& = delete;  // they are part of the solid
+  std::span<const SolidBody> bodies() const&& = delete;  // bodies are part of the solid
   /// Returns the surface of all bodies of a polyhedron. SolidRule::winding: the whole mesh. Images: empty.
   [[nodiscard]] const SolidSurface& surface() const&;
   const SolidSurface& surface() const&& = delete;
@@ -134,12 +137,12 @@ class Solid {
   /// Returns the shells of a polyhedron in the order of their smallest triangles. Other rules: none.
   [[nodiscard]] std::span<const SolidShell> shells() const&;
   std::span<const SolidShell> shells() const&& = delete;
-  /// Returns the number of shells that faced the solid and were reversed.
+  /// Returns the number of shells that faced into the solid and were reversed.
   [[nodiscard]] std::size_t reversed_shells() const;
-  /// Returns the number of triangles that faced another way than most of their shell and were reversed.
+  /// Returns the number of triangles that faced against the majority of their shell and were reversed.
   [[nodiscard]] std::size_t reversed_triangles() const;
   /// Returns counts of the defects that were resolved to make the mesh a polyhedron. Returns nullopt if the mesh has no
-  /// defects, or if they were not resolved. In the latter case, reason() gives the cause.
+  /// defects, or if defects were not resolved. If they were not resolved, reason() gives the cause.
   [[nodiscard]] const std::optional<CrossingCounts>& resolved() const;
   /// SolidRule::winding: returns true if the triangles face inwards as a whole, so that almost no point is inside. The
   /// remedy is to reverse all triangles. The sign of the volume between the triangles and the middle of their box
@@ -168,8 +171,8 @@ class Solid {
   /// Returns a cell complex with the homotopy type of a polyhedron. CellularModel::report() states if this homotopy
   /// type is proven.
   /// @throws InvalidOption, also for an image, because its voxels already are such a complex. InvalidMesh for
-  /// SolidRule::winding, or if a coordinate is not 0 but smaller than the largest one by more than 45 orders of
-  /// magnitude. InvalidGrid, OutOfMemory, Cancelled.
+  /// SolidRule::winding, or if a non-zero coordinate is more than 45 orders of magnitude smaller than the largest
+  /// coordinate. InvalidGrid, OutOfMemory, Cancelled.
   /// Cost: linear in the number of triangles, and of cubes that the surface meets; 3 bytes of memory per cube of the
   /// grid.
   [[nodiscard]] CellularModel model(const CellularModelOptions& options = {}, const Context& context = {}) const;

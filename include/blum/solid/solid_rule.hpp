@@ -12,8 +12,8 @@ namespace blum {
 /// Rule that defines a solid, and so the meaning of a certificate.
 enum class SolidRule : std::uint8_t {
   polyhedron,  ///< Solid that the closed shells of a mesh bound. Its tunnels and voids are known exactly.
-  winding,     ///< Points with a winding number above 1/2. The mesh is open, crosses itself or is not manifold. Results
-               ///< preserve only the topology of the voxels whose centres are inside.
+  winding,     ///< Points with a winding number above 1/2. Used if the mesh is open, crosses itself or is not manifold.
+               ///< Results preserve only the topology of the voxels whose centres are inside.
   voxels       ///< Union of the selected, closed voxels of an image.
 };
 

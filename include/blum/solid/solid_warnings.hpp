@@ -9,14 +9,14 @@
 
 namespace blum {
 
-/// Returns a warning if triangles were reversed, and another one if shells were reversed (both
-/// WarningCode::reversed_shells).
+/// Returns a warning if triangles were reversed, and another warning if shells were reversed. The code of both is
+/// WarningCode::reversed_shells.
 /// @param triangles, shells  numbers of reversed triangles and shells, from Solid::reversed_triangles() and
 ///                           Solid::reversed_shells(), or from a CleanReport.
 [[nodiscard]] std::vector<Warning> reversal_warnings(std::size_t triangles, std::size_t shells);
 
 /// If crossings were resolved, returns a warning that results refer to Solid::surface(), not to the mesh
-/// (WarningCode::crossings_removed). Otherwise returns none.
+/// (WarningCode::crossings_removed). Otherwise returns an empty list.
 [[nodiscard]] std::vector<Warning> crossing_warnings(const Solid& solid);
 
 /// Returns reversal_warnings() and crossing_warnings() of a solid.

@@ -13,10 +13,10 @@ namespace blum {
 
 /// Returns the boundary of the set of points around which a closed mesh winds once or more. The mesh keeps its present
 /// orientation: no triangle is reversed. If one shell lies in another one and both face the same way, only the outer
-/// shell remains. If the mesh already is that boundary, returns the mesh.
+/// shell remains. If the mesh already is this boundary, the function returns the mesh.
 ///
 /// Use this function instead of Solid::of() for meshes that move. It computes neither bodies nor shells nor topology,
-/// and takes a fraction of the time.
+/// and takes a fraction of the time of Solid::of().
 ///
 /// @param mesh  must pass validate(mesh). Its segments and points are left out.
 /// @param name  name in errors, for example "object 3".
