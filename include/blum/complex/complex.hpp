@@ -22,7 +22,7 @@ struct ComplexView {
 };
 
 /// Vertices, edges and triangles in space, each kind with named columns of numbers. Examples are a medial axis, a mesh
-/// with attributes, or pairs of witness points. As a space, a complex is the union of its vertices, edges and
+/// with attributes, or pairs of witness points. The space of a complex is the union of its vertices, edges and
 /// triangles. Sides of triangles belong to the complex, even if `edges` does not list them.
 struct Complex {
   std::vector<Vec3d> positions;                         ///< Positions of the vertices.

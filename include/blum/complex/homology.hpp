@@ -16,8 +16,8 @@ namespace blum {
 /// Cost: near-linear for surfaces that meet along few seams.
 [[nodiscard]] BettiNumbers homology(const ComplexView& complex, const Context& context = {});
 
-/// Returns the number of vertices, minus the number of edges, plus the number of triangles. This number is the
-/// alternating sum of the Betti numbers. Sides of triangles count as edges, even if they are not listed. An edge or
+/// Returns the number of vertices, minus the number of edges, plus the number of triangles. The Euler characteristic is
+/// the alternating sum of the Betti numbers. Sides of triangles count as edges, even if they are not listed. An edge or
 /// triangle that is listed twice counts once.
 /// @throws as homology().
 /// Cost: that of constructing Incidence.

@@ -62,17 +62,17 @@ inline constexpr std::string_view sheet = "sheet";
 /// Additional columns of axes from Voronoi diagrams with patches (add_patch_columns()). Triangles, int32: the patches
 /// on the two sides, the smaller number first. The two numbers are equal if both sides belong to the same patch.
 inline constexpr std::array<std::string_view, 2> patches{"patch_a", "patch_b"};
-/// Additional column of axes from Voronoi diagrams with patches. Triangles, int32: number of the sheet of two patches,
-/// from 0; -1 inside a patch.
+/// Additional column of axes from Voronoi diagrams with patches. Triangles, int32: number of the sheet between two
+/// patches, from 0; -1 if the two patches are the same.
 inline constexpr std::string_view patch_sheet = "patch_sheet";
 
 /// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: a
 /// vertex, edge or triangle exists if theta is less than this angle. The angle is infinite if the vertex, edge or
 /// triangle exists at every theta.
 inline constexpr std::string_view until = "until";
-/// Edges, float32, degrees: an edge has its role if from <= theta < until. If the role of an edge changes with theta,
-/// the edge is listed once for each role. For example, an edge that is a seam, then a rim, then a curve is listed three
-/// times.
+/// Edges, float32, degrees: smallest theta at which the edge has its role. An edge has its role if from <= theta <
+/// until. If the role of an edge changes with theta, the edge is listed once for each role. For example, an edge that
+/// is a seam, then a rim, then a curve is listed three times.
 inline constexpr std::string_view from = "from";
 
 }  // namespace medial_columns

@@ -16,8 +16,9 @@
 
 namespace blum {
 
-/// Bounding-volume hierarchy over boxes, with eight children per node. It finds boxes by their position and passes
-/// their indices to a function of the caller, the visitor. The hierarchy for triangles, segments and points is Bvh.
+/// Bounding-volume hierarchy over boxes, with eight children per node. The hierarchy finds boxes by their positions,
+/// and passes their indices to a function of the caller, the visitor. The hierarchy for triangles, segments and points
+/// is Bvh.
 ///
 /// All queries may run on many threads at once. They allocate no memory except for the lists that they return. The
 /// order of visits does not depend on the number of threads.

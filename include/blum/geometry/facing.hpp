@@ -14,7 +14,7 @@
 
 namespace blum::detail {
 
-/// Entry of shell_of_triangles() for triangles that have the same vertex twice.
+/// Entry of shell_of_triangles() for a triangle with the same vertex at two corners.
 constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 
 /// Returns for each triangle of a closed mesh the number of its shell. Shells are numbered as in Topology::shells, in
@@ -54,8 +54,8 @@ struct RepairedFacing {
 [[nodiscard]] std::optional<RepairedFacing> repaired_facing(const MeshView& mesh, const SiteTable& sites,
                                                             const Orientation& given, const Context& context);
 
-/// Returns six times the signed volume of a mesh; it is negative if the mesh faces inwards. Coordinates are taken
-/// relative to the middle of the mesh's box, so that rounding is small even far from the origin.
+/// Returns six times the signed volume of a mesh; the volume is negative if the mesh faces inwards. Coordinates are
+/// taken relative to the middle of the mesh's box, so that rounding errors are small even far from the origin.
 [[nodiscard]] double volume_around_middle(const MeshView& mesh);
 
 }  // namespace blum::detail

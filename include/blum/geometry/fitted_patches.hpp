@@ -45,7 +45,7 @@ void check_patch_fit(const std::optional<double>& tolerance);
 /// contains no face that deviates from the shape much more than the part's median face. A flat face of more than two
 /// triangles belongs to no sphere.
 ///
-/// Several shapes may fit the same seed. The one with the largest part is chosen. If these parts have about equal
+/// Several shapes may fit the same seed. The shape with the largest part is chosen. If these parts have about equal
 /// areas, a plane comes first. Otherwise, the smallest mean deviation of vertices, and of middles of edges and
 /// triangles, decides. Afterwards, a face at the border of two parts changes to the part whose shape is closer to its
 /// vertices. Flat faces that fit no other shape are planes. Section "Fitted patches" of docs/theory/voronoi.md lists

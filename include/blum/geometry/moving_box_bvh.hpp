@@ -25,8 +25,8 @@ struct MovingBox {
 /// function of the caller, the visitor.
 ///
 /// All queries may run on many threads at once, and allocate no memory. Every pair of boxes that touch at some time is
-/// visited. Because of rounding to single precision, a few pairs that do not touch are visited, too. Cost: O(n log n)
-/// time to build, about 0.15 microseconds per box, and 160 bytes per box.
+/// visited. Because boxes are rounded to single precision, a few pairs that do not touch are visited, too. Cost: O(n
+/// log n) time to build, about 0.15 microseconds per box, and 160 bytes per box.
 class MovingBoxBvh {
  public:
   /// @param boxes  at most max_id_count boxes, all finite, none empty. @throws Cancelled.
@@ -49,8 +49,8 @@ class MovingBoxBvh {
   void for_each_self_pair(std::size_t block, FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
   /// Calls limit = visit(k) for each box k that may touch `box` before or at the time `limit`. Among boxes of one node,
-  /// those that may touch earlier are visited first. Because of rounding to single precision, boxes that touch a little
-  /// later, or not at all, are visited, too.
+  /// those that may touch earlier are visited first. Because boxes are rounded to single precision, boxes that touch a
+  /// little later, or not at all, are visited, too.
   /// @param limit  latest time of a contact; with 1, all boxes that may touch are visited.
   void visit_until(const MovingBox& box, double limit, FunctionRef<double(std::uint32_t)> visit) const;
 

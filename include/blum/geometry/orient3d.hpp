@@ -10,7 +10,7 @@ namespace blum::detail {
 /// rounded up.
 inline constexpr double orient3d_rounding = 8e-16;
 
-/// Returns the sign (-1, 0, 1) of the determinant of b - a, c - a, d - a. It is 1 if the triangle a, b, c turns
+/// Returns the sign (-1, 0, 1) of the determinant of b - a, c - a, d - a. The sign is 1 if the triangle a, b, c turns
 /// counter-clockwise seen from d. The sign is exact for coordinates that are 0 or of magnitude 1e-80 to 1e100.
 ///
 /// A determinant in double precision nearly always decides; otherwise, the determinant is computed in twice that

@@ -16,8 +16,9 @@
 namespace blum {
 
 /// Bounding-volume hierarchy over the primitives of a mesh, with eight children per node and boxes aligned with the
-/// surface. It finds pairs of primitives of two meshes that may be close. The hierarchy for closest points and rays is
-/// Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the points of the mesh.
+/// surface. The hierarchy finds pairs of primitives of two meshes that may be close to each other. The hierarchy for
+/// closest points and rays is Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the
+/// points of the mesh.
 ///
 /// All queries may run on many threads at once. Only the queries that return pairs of nodes allocate memory. Every pair
 /// whose distance is within the limit is visited. Pairs that are farther apart may be visited, too. The shape of the

@@ -30,7 +30,7 @@ struct PlanePolygon {
   }
 };
 
-/// Returns twice the area of a loop. It is positive if the loop runs counter-clockwise.
+/// Returns twice the area of a loop. The result is positive if the loop runs counter-clockwise.
 [[nodiscard]] double doubled_area(std::span<const PlanePolygon::Point> loop);
 
 /// Returns true if the segments ab and cd cross or overlap, or if an end of one lies inside the other. Returns false if

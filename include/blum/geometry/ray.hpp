@@ -24,10 +24,10 @@ struct ScaledRay {
 };
 [[nodiscard]] ScaledRay scaled_direction(const Ray& ray);
 
-/// Returns the sign (-1, 0, 1) of the determinant of direction, a - origin, b - origin. It is 1 if the ray's line lies
-/// left of the directed edge from a to b, seen against the ray's direction. The sign is exact for coordinates that are
-/// 0 or of magnitude 1e-80 to 1e100. A rounded determinant nearly always decides; otherwise, the determinant is summed
-/// without error (Shewchuk 1997).
+/// Returns the sign (-1, 0, 1) of the determinant of direction, a - origin, b - origin. The sign is 1 if the ray's line
+/// lies left of the directed edge from a to b, seen against the ray's direction. The sign is exact for coordinates that
+/// are 0 or of magnitude 1e-80 to 1e100. A rounded determinant nearly always decides; otherwise, the determinant is
+/// summed without error (Shewchuk 1997).
 [[nodiscard]] int ray_side(const Ray& ray, const Vec3d& a, const Vec3d& b);
 
 struct TriangleCrossing {

@@ -16,8 +16,8 @@ struct RigidTransform {
 
   [[nodiscard]] constexpr Vec3d operator()(const Vec3d& p) const { return rotation * p + translation; }
 
-  /// Returns the deviation of the rotation from an orthonormal matrix. It is the largest error of squared column
-  /// lengths (from 1) and of dot products of columns (from 0).
+  /// Returns the deviation of the rotation from an orthonormal matrix. The deviation is the largest error of squared
+  /// column lengths (from 1) and of dot products of columns (from 0).
   [[nodiscard]] double rotation_error() const {
     double error = 0;
     const auto& c = rotation.columns;

@@ -30,8 +30,8 @@ struct Site {
 ///   [V, V+E)        the distinct edges of triangles and segments, in rising order of (smaller, larger vertex).
 ///   [V+E, V+E+F)    the triangles, in the mesh's order.
 ///
-/// Edges whose two ends are the same vertex are not counted. Edges are distinguished by vertex index, not by position.
-/// If parts of a mesh should share edges, weld the mesh first (see weld()).
+/// Edges whose two ends are the same vertex are left out. Edges are distinguished by vertex index, not by position. If
+/// parts of a mesh should share edges, weld the mesh first (see weld()).
 class SiteTable {
  public:
   SiteTable() = default;

@@ -50,9 +50,9 @@ struct Shell {
   std::int64_t euler_characteristic = 0;
   std::int64_t genus = 0;       ///< number of handles, (2 - euler_characteristic) / 2
   std::uint32_t depth = 0;      ///< number of other shells that contain this shell
-  std::int64_t parent = -1;     ///< index of the innermost shell that contains this one; -1 if none does
+  std::int64_t parent = -1;     ///< index of the innermost other shell that contains this shell; -1 if none does
   bool faces_outwards = false;  ///< true if the shell faces away from the solid: its volume is positive if `depth` is
-                                ///< even, and negative if it is odd
+                                ///< even, and negative if `depth` is odd
 };
 
 template <>
@@ -68,9 +68,9 @@ struct Description<Shell> {
       Member{"euler_characteristic", &Shell::euler_characteristic, "",
              "vertices - edges + faces, with a vertex counted once for each of its fans"},
       Member{"genus", &Shell::genus, "", "number of handles"},
-      Member{"depth", &Shell::depth, "", "number of other shells that contain it"},
-      Member{"parent", &Shell::parent, "", "innermost shell that contains it; -1 if none"},
-      Member{"faces_outwards", &Shell::faces_outwards, "", "true if it faces away from the solid"},
+      Member{"depth", &Shell::depth, "", "number of other shells that contain this shell"},
+      Member{"parent", &Shell::parent, "", "innermost other shell that contains this shell; -1 if none"},
+      Member{"faces_outwards", &Shell::faces_outwards, "", "true if the shell faces away from the solid"},
   };
 };
 

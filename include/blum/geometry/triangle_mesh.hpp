@@ -16,7 +16,8 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Vertex indices of a line segment.
 using Segment = std::array<std::uint32_t, 2>;
 
-/// View of any set of triangles, segments and points over shared vertices, through spans. It copies and owns nothing.
+/// View of any set of triangles, segments and points over shared vertices, through spans. The view copies and owns no
+/// data.
 ///
 /// Nothing is assumed about the mesh: triangles may intersect, be repeated or degenerate, and leave holes. Vertices
 /// that no triangle, segment or point uses are not part of the shape, and are ignored.
@@ -61,7 +62,7 @@ void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-/// Returns the given triangles, each reversed so that it faces the other way.
+/// Returns the given triangles, each reversed so that it faces in the opposite direction.
 [[nodiscard]] std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles);
 
 /// Returns the box around all vertices that a triangle, segment or point uses. If there are no such vertices, the box

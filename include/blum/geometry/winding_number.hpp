@@ -47,8 +47,8 @@ class WindingNumber {
   [[nodiscard]] double approximate(const Vec3d& query, double beta = 2) const;
 
   /// Returns true if w > 1/2, with the same result as the full sum. The hierarchy is refined until the error bound
-  /// excludes w = 1/2. If that is impossible (if |w - 1/2| is below about 1e-9), the full sum is computed. Cost: O(log
-  /// n) on average, about 1 us for 70,000 triangles.
+  /// excludes w = 1/2. If refining does not exclude w = 1/2 (if |w - 1/2| is below about 1e-9), the full sum is
+  /// computed. Cost: O(log n) on average, about 1 us for 70,000 triangles.
   [[nodiscard]] bool is_inside(const Vec3d& query) const;
 
   /// Side of a query (inside or outside), and a lower bound on |w - 1/2| at the query. If a path from the query crosses
@@ -57,9 +57,10 @@ class WindingNumber {
     bool is_inside = false;
     double margin = 0;  ///< 0 if rounding alone may change the side
   };
-  /// Returns the side that is_inside() returns, and the margin.
+  /// Returns the side of a query, as is_inside() does, and its margin.
   /// @param distance  distance of the query from the triangles, mesh units. Rounding may change solid angles by about
-  /// 1e-15 times the coordinates divided by this distance. If no margin is left, the rounded full sum decides.
+  /// 1e-15 times the coordinates divided by this distance. If rounding may change w by the whole margin, the margin is
+  /// 0, and the rounded full sum decides the side.
   [[nodiscard]] Decision decide(const Vec3d& query, double distance) const;
   /// Returns the amount by which rounding may change w at a given distance from the triangles.
   [[nodiscard]] double rounding_at(const Vec3d& query, double distance) const;

@@ -11,7 +11,7 @@
 
 namespace blum {
 
-/// View of a 3D image through a span. It copies and owns no values. See VoxelImage.
+/// View of a 3D image through a span. The view copies and owns no values. See VoxelImage.
 struct VoxelImageView {
   /// Types in the order of VoxelImage::Values.
   using Values =

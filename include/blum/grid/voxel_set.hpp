@@ -75,7 +75,7 @@ class VoxelSet {
   std::vector<std::uint64_t> words_;
 };
 
-/// Smallest box that contains all voxels of a set. The upper corner is exclusive. It is 0 if the set is empty.
+/// Smallest box that contains all voxels of a set. The upper corner is exclusive, and is (0, 0, 0) if the set is empty.
 struct VoxelExtent {
   std::array<std::int64_t, 3> lower{};
   std::array<std::int64_t, 3> upper{};

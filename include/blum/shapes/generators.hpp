@@ -158,7 +158,7 @@ struct BodiesOptions {
   double spacing = 1;  ///< distance between neighbouring centres, > size
   int frequency = 0;   ///< 0: boxes of 12 triangles; else spheres, see SphereOptions
 };
-/// Makes separate equal bodies on the smallest cubic lattice that has room for `count` of them.
+/// Makes `count` separate equal bodies on the smallest cubic lattice that has room for all of them.
 [[nodiscard]] TriangleMesh make_bodies(const BodiesOptions& options = {});
 
 struct PlateOptions {

@@ -24,10 +24,10 @@ struct ExtraCell {
   /// End of an interval on the segment between two neighbouring nodes.
   struct End {
     Vec3d point;                                 ///< Mesh units.
-    std::optional<std::uint32_t> triangle = {};  ///< Triangle of the surface at this end; none if the end is a node.
+    std::optional<std::uint32_t> triangle = {};  ///< Triangle of the surface at this end; unset if the end is a node.
   };
   int dimension = 0;  ///< 0 to 3.
-  /// Cell of the lattice of voxels to which this cell corresponds; none if cubes of the model were split there.
+  /// Cell of the lattice of voxels to which this cell corresponds; unset if cubes of the model were split there.
   std::optional<Cell> place = {};
   Vec3d witness;            ///< Point of the component of the solid that the cell represents, mesh units.
   std::optional<Box3> box;  ///< For vertices in split cubes: the part of the cube in which the vertex lies, mesh units.
@@ -37,10 +37,10 @@ struct ExtraCell {
 /// Cellular model of a body (see CellularModel) over a grid. It is stored in two parts. The first part is the set of
 /// voxels whose nodes are inside the body. The second part is the list of cells in which the model differs from the
 /// union of these closed voxels. Where walls or gaps are thinner than a voxel, the model has extra cells. An extra cell
-/// belongs to no voxel, or is one of several cells that replace one cell of the lattice. All other cells of the model
-/// are cells of the lattice of voxels. In this lattice, a voxel stands for a node inside the body, and a square stands
-/// for an edge of the grid. An edge of the lattice stands for a square of the grid, and a vertex for a cube of the
-/// grid.
+/// either belongs to no voxel, or is one of several cells that replace one cell of the lattice. All other cells of the
+/// model are cells of the lattice of voxels. In this lattice, a voxel stands for a node inside the body, and a square
+/// stands for an edge of the grid. An edge of the lattice stands for a square of the grid, and a vertex for a cube of
+/// the grid.
 struct BodyCells {
   CellLattice lattice;         ///< Lattice of the voxels. Voxel (i, j, k) surrounds node (i, j, k) of the grid.
   VoxelSet inside;             ///< Nodes inside the body, decided exactly. For nodes on the surface, see
