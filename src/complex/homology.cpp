@@ -20,7 +20,8 @@ namespace {
 using Face = std::array<std::uint32_t, 3>;
 
 /// Returns each triangle once, in ascending order and with ascending corners. One pass sorts the triangles by their
-/// first corner. Then those of each first corner are sorted separately, with checks for cancellation in between.
+/// first corner. Then the triangles of each first corner are sorted separately, with checks for cancellation in
+/// between.
 std::vector<Face> distinct_triangles(const ComplexView& complex, const Context& context) {
   std::vector<std::size_t> first(complex.vertex_count + 1, 0);
   const auto rising = [](Face face) {
@@ -108,7 +109,8 @@ class Peeling {
  private:
   const Columns& columns_;
   std::vector<std::uint32_t> count_;
-  std::vector<std::uint64_t> sum_;  ///< for each row: sum of the indices of its columns; if one is left, its index
+  std::vector<std::uint64_t> sum_;  ///< for each row: sum of the indices of its remaining columns; if one column
+                                    ///< remains, this is its index
   std::vector<std::uint32_t> free_;
 };
 
@@ -238,7 +240,7 @@ class CyclesOfSheets {
  private:
   static constexpr std::uint32_t no_sheet = 0xffffffffU;
 
-  /// Removes triangles with a free edge until no triangle has one.
+  /// Removes triangles with a free edge until no triangle has a free edge.
   void remove_open() {
     sheet_.assign(sides_.size(), 0);
     std::size_t steps = 0;

@@ -29,7 +29,7 @@ void for_each_pair(const ComplexView& complex, const Use& use) {
   }
 }
 
-/// Loops of two to eight ranges read all cells. They take long from some 10,000 cells.
+/// Loops of two to eight ranges read all cells. From some 10,000 cells, such a loop takes long.
 Start start_for(const ComplexView& complex) {
   return complex.edges.size() + complex.triangles.size() > 10000 ? Start::at_once : Start::measured;
 }
@@ -38,7 +38,7 @@ Start start_for(const ComplexView& complex) {
 struct VertexPairs {
   std::vector<std::size_t> first;    ///< for each vertex: index of its first pair; then the number of pairs
   std::vector<std::uint64_t> pairs;  ///< sort keys: the larger vertex in the upper 32 bits, the number in the lower
-  std::uint32_t listed = 0;          ///< lower numbers belong to listed edges, the others to sides
+  std::uint32_t listed = 0;          ///< numbers below this belong to listed edges, all other numbers to sides
 
   VertexPairs(const ComplexView& complex, const Context& context)
       : first(complex.vertex_count + 1, 0), listed(static_cast<std::uint32_t>(complex.edges.size())) {

@@ -36,7 +36,7 @@ bool is_role_of_edges(std::int32_t number) {
          number != static_cast<std::int32_t>(MedialRole::junction);
 }
 
-/// Returns a description of one vertex's problem; null if it has none.
+/// Returns a description of the problem of a vertex; null if the vertex is valid.
 const char* vertex_problem(const MedialView& axis, std::size_t v, std::int32_t role) {
   if (!std::isfinite(axis.radius[v]) || axis.radius[v] < 0) return "has a radius that is negative or not finite";
   if (!is_finite(axis.footprint(v, 0)) || !is_finite(axis.footprint(v, 1))) return "has a footprint that is not finite";
@@ -99,7 +99,8 @@ std::string problem_of_values(const Complex& axis) {
   return {};
 }
 
-/// Returns the result of a check. If a column is missing or has another type, returns the message of that error.
+/// Returns the result of a check. If a column is missing or has a wrong type, returns the error message about this
+/// column.
 template <class Check>
 std::string problem_in(const Check& check) {
   try {

@@ -37,7 +37,7 @@ void* allocate_aligned(std::size_t bytes) {
 void request_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   if (bytes < 2 * huge_page) return;
-  // The range must begin at a page. Only whole huge pages in it are affected.
+  // The range must begin at a page. Only whole huge pages in the range are affected.
   const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(memory) % huge_page) % huge_page;
   if (before >= bytes) return;
   madvise(static_cast<char*>(memory) + before, bytes - before, MADV_HUGEPAGE);  // may fail: faults only cost more

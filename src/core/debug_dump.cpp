@@ -12,8 +12,8 @@
 namespace blum {
 namespace {
 
-/// The arrays of a VTK file. Each has a tag in the text of the file. Its numbers follow at the end of the file, after a
-/// count of their bytes.
+/// The arrays of a VTK file. Each array has a tag in the text of the file. The numbers of the array follow at the end
+/// of the file, after a count of their bytes.
 class Arrays {
  public:
   /// @param attributes  type and name of the array, as XML attributes.
@@ -54,7 +54,7 @@ struct Cells {
   }
 };
 
-/// The points of a file, and a record of those that no cell uses.
+/// The points of a file, and a record of the points that no cell uses.
 class Points {
  public:
   explicit Points(std::span<const Vec3d> points) : points_(points), is_alone_(points.size()) {

@@ -25,7 +25,7 @@ namespace {
 
 #if defined(BLUM_THREADS_TBB)
 /// Unused arenas, by number of slots. Arenas are reused, because oneTBB does not free all memory of a destroyed arena
-/// (it keeps 7 KB in 2021.8). With several calls per frame, the loss would add up.
+/// (version 2021.8 keeps 7 KB). With several calls per frame, the loss would add up.
 class ArenaPool {
  public:
   /// An arena for the lifetime of the lease.
@@ -161,7 +161,7 @@ struct Closing {
   ~Closing() { gate.close(); }
 };
 
-/// Number of helpers that were invited by any loop, but did not start yet.
+/// Number of helpers that any loop has invited, and that have not started yet.
 std::atomic<int>& waiting_helpers() {
   static std::atomic<int> count{0};
   return count;
@@ -217,15 +217,15 @@ class Trial {
 
  private:
   using Seconds = std::chrono::duration<double>;
-  /// Inviting a helper costs the caller some 5 us. The helper begins some 50 us later. So it saves time only if much
-  /// is left.
+  /// Inviting a helper costs the caller some 5 us. The helper begins some 50 us later. So a helper saves time only if
+  /// much work is left.
   static constexpr Seconds least_spent = std::chrono::microseconds(50);
   static constexpr Seconds least_left = std::chrono::microseconds(150);
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Reports the start, the end, and at most every 30 ms the progress in between. It never reports from two threads at
-/// once.
+/// Reports the start, the end, and at most every 30 ms the progress in between. Two threads never report at the same
+/// time.
 class ProgressReporter {
  public:
   ProgressReporter(const Context& context, std::string_view phase, std::size_t total)

@@ -18,8 +18,8 @@
 namespace blum {
 
 struct FieldResult {
-  /// Linear indices, ascending, of the nodes that the caller must settle by exact queries. In float32, no site claimed
-  /// them, or their side is undecided.
+  /// Linear indices, ascending, of the nodes that the caller must settle by exact queries. Because of rounding to
+  /// float32, these nodes lie in no site's domain, or their side is undecided.
   std::vector<std::size_t> unsettled;
   /// True if the distances have the signs that the request asks for. If false, the caller must find the signs.
   bool is_signed = false;
@@ -35,8 +35,8 @@ class FieldBackend {
 
   [[nodiscard]] virtual Device device() const = 0;
 
-  /// Makes `mesh` the current mesh. If the connectivity is that of the mesh before, data that depend only on it are
-  /// kept. The mesh must stay alive until compute() returns.
+  /// Makes `mesh` the current mesh. If the connectivity is that of the previous mesh, data that depend only on
+  /// connectivity are kept. The mesh must stay alive until compute() returns.
   virtual void set_mesh(const MeshView& mesh, const Context& context) = 0;
   [[nodiscard]] virtual const SiteTable& sites() const = 0;
 
@@ -75,7 +75,7 @@ class ImageBackend {
 
 /// Returns the back end of context.device for fields of order 1 or 2.
 /// @param reason  receives the reason if the device is `automatic` and the CPU is used.
-/// @throws DeviceError; InvalidOption if the order is 2 and a CUDA device is asked for.
+/// @throws DeviceError; InvalidOption if the order is 2 and a CUDA device is requested.
 [[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context, int order, std::string& reason);
 /// Returns the image back end of context.device; null for the CPU. `reason` is as for make_field_backend().
 /// @throws DeviceError.

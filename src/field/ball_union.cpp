@@ -101,8 +101,8 @@ struct BallRows {
   [[nodiscard]] Ball operator[](std::size_t k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
-/// Removes balls that cannot be the closest one anywhere in a block. Compares each with the ball closest to the block's
-/// centre.
+/// Removes balls that cannot be the closest one anywhere in a block. Compares each ball with the ball closest to the
+/// block's centre.
 class Filter {
  public:
   /// Calls keep(ball), in order, for each ball in [begin, end) that may be closest somewhere in a block. keep may
@@ -141,8 +141,8 @@ class Filter {
     }
   }
 
-  /// Returns the index of the first smallest value. It is faster than std::min_element, in which each comparison
-  /// depends on the one before.
+  /// Returns the index of the first smallest value. This is faster than std::min_element, in which each comparison
+  /// depends on the previous comparison.
   [[nodiscard]] std::size_t smallest_value(std::size_t count) const {
     constexpr std::size_t lanes = 8;
     std::array<double, lanes> least{};
@@ -158,8 +158,8 @@ class Filter {
     return static_cast<std::size_t>(std::find(value_.begin(), value_.end(), smallest) - value_.begin());
   }
 
-  /// Sets `lead_` for each ball. It is negative if the ball may be closer than the best one somewhere in the block. The
-  /// best one is the closest ball at the block's centre.
+  /// Sets `lead_` for each ball. `lead_` is negative if, somewhere in the block, the ball may be closer than the best
+  /// ball. The best ball is the closest ball at the block's centre.
   ///
   /// For two balls, the difference of their distances changes along a path by at most |u - v| per unit of length. Let
   /// `one` and `other` be the two centres. Then u and v are the unit directions from them to the point x. The length |u

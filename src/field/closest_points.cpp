@@ -27,8 +27,8 @@
 namespace blum {
 namespace {
 
-/// A range is short enough that the first one, which runs alone, costs little. Only winding numbers need longer ranges,
-/// in which queries share work.
+/// Ranges are so short that the first range, which one thread runs alone, costs little. Only winding numbers need
+/// longer ranges, in which queries share work.
 constexpr std::size_t queries_per_range = 32;
 constexpr std::size_t checks_per_range = 32768;
 constexpr std::size_t gradients_per_range = 4096;
@@ -145,7 +145,7 @@ struct ClosestPointQuery::Data {
     use_planned_triangles(context);
   }
 
-  /// Does what the constructor and prepare() do, at the same time.
+  /// Does the work of the constructor and of prepare() at the same time.
   static std::unique_ptr<Data> for_many(const MeshView& mesh, std::size_t queries, const ClosestPointOptions& options,
                                         const Context& context) {
     const bool is_worth_it = PointSearch::is_worth_building(queries, mesh.triangles.size());
@@ -166,7 +166,7 @@ struct ClosestPointQuery::Data {
       search = std::make_unique<const PointSearch>(mesh, SiteTable(mesh, quiet), quiet);
     };
     parallel_for(context, 2, 1, "", run, Start::at_once);
-    // The search is that of the given triangles.
+    // The search was built from the given triangles.
     if (data->given_triangles_.empty()) data->search_ = std::move(search);
     data->prepare(queries, context);
     return data;
@@ -225,8 +225,8 @@ struct ClosestPointQuery::Data {
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
   }
 
-  /// Finds the signs of queries that lie close together, and reports their results. If several of them need winding
-  /// numbers, they share the evaluation if possible.
+  /// Finds the signs of queries that lie close together, and reports their results. Queries that need winding numbers
+  /// share evaluations if possible.
   void finish(std::span<const PointSearch::Answer> group, Use use) const {
     static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
     InlineList<FoundPoint, sign::most_shared> found;
@@ -272,12 +272,12 @@ struct ClosestPointQuery::Data {
     finish(group.span(), use);
   }
 
-  /// Returns the bound, increased by more than rounding can have reduced it.
+  /// Returns the bound, increased by more than the largest possible rounding error.
   [[nodiscard]] double with_slack(double bound, const Vec3d& q) const {
     return bound * (1 + 1e-9) + 1e-12 * (longest + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
   }
 
-  /// Returns the batch search for this many queries, or null if they are too few for it to save time. The first call
+  /// Returns the batch search for this many queries, or null if there are too few queries to save time. The first call
   /// that returns a search builds it.
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);

@@ -59,14 +59,15 @@ void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& site
     (void)apply_winding_sign(field, mesh, sites, context);
     return;
   }
-  // The reversed mesh has negated winding numbers. Its numbers below 1/2 are those above -1/2 here, so the signs are
-  // inverted.
+  // The reversed mesh has negated winding numbers. A point with a number above -1/2 in the given mesh has a number
+  // below 1/2 in the reversed mesh. So the signs are inverted.
   const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
   invert_signs(context, field);
 }
 
-/// Negates the distance of each node whose closest site faces away from it. The sites must be stored in the field.
+/// Negates the distance of each node whose closest site faces away from the node. The sites must be stored in the
+/// field.
 /// @return  nodes without a site, ascending.
 std::vector<std::size_t> apply_pseudonormals(const MeshView& mesh, const SiteTable& sites, const Context& context,
                                              Field& field) {

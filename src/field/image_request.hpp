@@ -30,7 +30,7 @@ struct ImageRequest {
 
   LabelSelection selection = {};
   float* distance = nullptr;  ///< one per voxel, x fastest, in the unit of the spacing
-  /// One per voxel: linear index of the closest site voxel; 0xffffffff beyond the band. Null if they are not wanted.
+  /// One per voxel: linear index of the closest site voxel; 0xffffffff beyond the band. Null if no sites are requested.
   std::uint32_t* site = nullptr;
 
   [[nodiscard]] std::size_t voxel_count() const { return size[0] * size[1] * size[2]; }

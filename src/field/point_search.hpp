@@ -47,7 +47,7 @@ class PointSearch {
                FunctionRef<void(std::span<const Answer>)> receive) const;
 
  private:
-  /// Returns true if a query's answer is certain. If the kernels found a second site, it takes part.
+  /// Returns true if a query's answer is certain. A second site that the kernels found is compared, too.
   /// @param nearest  the closest point on the first site, in double precision; no site if it is uncertain.
   [[nodiscard]] bool is_certain(const cpu::FoundSite& found, NearestSite& nearest) const;
   /// Searches the Bvh. The kernels' distance limits the search.

@@ -61,7 +61,7 @@ SecondLabels::OfSite SecondLabels::of_site(const SiteTable& sites, SiteId site) 
 
 bool SecondLabels::has_second(const OfSite& labels) const {
   // `own` is the number of different labels given. If the mesh has more labels, a vertex with another label exists, and
-  // it may be second.
+  // this vertex may be second.
   const std::size_t own =
       1 + (labels[1] != labels[0] ? 1U : 0U) + (labels[2] != labels[0] && labels[2] != labels[1] ? 1U : 0U);
   return count_ > own;

@@ -118,9 +118,9 @@ struct NetBox {
 };
 
 /// Surface between a set of voxels and the other voxels: a closed, oriented manifold of quadrilaterals and triangles.
-/// They face the unselected voxels. Coordinates are in voxels; the centres of voxels are integers. The start positions
-/// are those of the voxels' faces. Where voxels touch only in an edge or a corner, the surface connects them, and start
-/// positions are moved apart a little.
+/// All polygons face the unselected voxels. Coordinates are in voxels; the centres of voxels are integers. The start
+/// positions are those of the voxels' faces. Where voxels touch only in an edge or a corner, the surface connects them,
+/// and start positions are moved apart a little.
 struct SurfaceNet {
   static constexpr std::uint32_t none = 0xffffffff;
 
@@ -483,8 +483,8 @@ SurfaceNet make_surface_net(const VoxelSet& voxels, const Context& context) {
 
 constexpr int most_iterations = 1000;
 constexpr std::size_t vertices_per_range = 4096;
-/// Factors of the two steps of Taubin smoothing, inwards and outwards. With them, a tube of radius 1.5 voxels keeps its
-/// radius over 60 rounds, and ripples of 5 voxels vanish.
+/// Factors of the two steps of Taubin smoothing, inwards and outwards. With these factors, a tube of radius 1.5 voxels
+/// keeps its radius over 60 rounds, and ripples of 5 voxels vanish.
 constexpr double step_in = 0.5;
 constexpr double step_out = -0.51;
 /// Number of steps from a vertex's start position to its smoothed position. Vertices of crossing triangles are moved
@@ -558,8 +558,8 @@ class Embedding {
     add_triangles();
   }
 
-  /// Moves vertices back towards their start until the surface does not cross itself. This ends, because the surface of
-  /// the start positions does not cross itself.
+  /// Moves vertices back towards their start until the surface does not cross itself. The loop ends, because the
+  /// surface of the start positions does not cross itself.
   void resolve(const Context& context) {
     constexpr std::size_t limit = 1000000;
     for (SelfIntersections found = find_self_intersections(mesh_, limit, context); !found.pairs.empty();

@@ -45,7 +45,7 @@ class NumbersTogether {
     for (const PointSearch::Answer& answer : group) {
       const Vec3d& at = answer.at;
       const double distance = answer.nearest.site.has_value() ? answer.nearest.distance : 0;
-      // A point that cannot share must not enlarge the box of the others.
+      // A point that cannot share answers must not enlarge the box of the points that can.
       if (!(distance > 0) || !(distance < far_away * bounds_.diagonal())) {
         values[answer.query] = winding_.value(at, max_error_).value;
         continue;

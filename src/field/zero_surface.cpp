@@ -86,8 +86,8 @@ constexpr void add_tetrahedron(CubeCase& cube, unsigned inside_corners, const st
   }
 }
 
-/// Divides the cube into six tetrahedra. Each is the path from corner 0 to corner 7 along the three axes, in one of
-/// their six orders.
+/// Divides the cube into six tetrahedra. The corners of each tetrahedron are on a path from corner 0 to corner 7 along
+/// the three axes, in one of their six orders.
 constexpr CubeCase make_cube_case(unsigned inside_corners) {
   CubeCase cube;
   for (unsigned first = 0; first < 3; ++first) {
@@ -116,8 +116,8 @@ inline constexpr std::array<CubeCase, 256> cube_cases = detail::make_cube_cases(
 /// range.
 constexpr std::size_t nodes_per_range = std::size_t{1} << 20;
 constexpr std::size_t least_slices_per_range = 4;
-/// Smallest distance of a vertex from the ends of its edge, as a fraction of the edge. It gives triangles next to a
-/// node exactly at the level an area.
+/// Smallest distance of a vertex from the ends of its edge, as a fraction of the edge. This distance gives an area to
+/// triangles next to a node that is exactly at the level.
 constexpr double least_part = 1e-3;
 
 void check(const Field& field, double level) {
@@ -265,7 +265,7 @@ class Marching {
 
   [[nodiscard]] bool has_finite_distances(std::size_t z) const {
     const float* const begin = field_.distance.data() + z * nodes_per_slice_;
-    // The loop counts all of them, because a loop that stops at the first one is not vectorised.
+    // The loop examines all nodes, because a loop that stops at the first infinite one is not vectorised.
     std::uint32_t others = 0;
     for (std::size_t node = 0; node < nodes_per_slice_; ++node) {
       others |= std::abs(begin[node]) <= std::numeric_limits<float>::max() ? 0U : 1U;

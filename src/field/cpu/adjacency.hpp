@@ -22,8 +22,8 @@ struct Adjacency {
   /// Other ends of the edges at vertex v: neighbours[first_neighbour[v] .. first_neighbour[v + 1]).
   std::vector<std::uint32_t> first_neighbour;
   std::vector<std::uint32_t> neighbours;
-  /// Two triangles of each edge. Further triangles are left out: bounds stay valid without them. no_index fills missing
-  /// entries.
+  /// Two triangles of each edge. Further triangles are left out, because bounds stay valid without them. no_index fills
+  /// missing entries.
   std::vector<std::array<std::uint32_t, 2>> edge_faces;
 };
 

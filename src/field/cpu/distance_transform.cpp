@@ -62,9 +62,9 @@ constexpr std::size_t task_voxels = std::size_t{1} << 16U;
 /// Voxels per task of the z pass. These tasks are larger because neighbouring tiles share memory pages and DRAM rows.
 constexpr std::size_t depth_task_voxels = std::size_t{1} << 18U;
 
-/// Touches each memory page of some rows of distances, which nothing has written before. Without this, the z pass would
-/// touch them first. Its columns meet a new page in every layer. So its first few tasks would map all of the memory and
-/// could not react to a cancel.
+/// Touches each memory page of some rows of distances, before anything is written to them. Otherwise, the z pass would
+/// touch these pages first. Columns of the z pass meet a new page in every layer. So its first few tasks would map all
+/// of the memory and could not react to a cancel.
 void touch_distances(const TransformPlan& plan, std::size_t first_row, std::size_t last_row) {
   if (plan.site == nullptr) return;  // the x pass writes there
   constexpr std::size_t page = 4096 / sizeof(float);

@@ -409,7 +409,7 @@ class Sweep {
 template <class D, bool kFinal, bool kMixed>
 void solve_columns(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, Columns& columns) {
   load_columns<D, kFinal, kMixed>(plan, scratch, columns);
-  // No site in these columns: the results already stand for none.
+  // These columns contain no site, and the results already state this.
   if (columns.lowest_candidate > columns.highest_candidate) return;
   const std::size_t lanes = columns.lanes;
   const std::size_t one_column = columns.length * (static_cast<std::size_t>(std::bit_width(columns.length)) + 2);

@@ -31,8 +31,8 @@ HWY_INLINE std::uint32_t group_bits(const std::uint64_t* words, std::size_t grou
 }
 
 /// Positions of a missing target. The closest target in a row is the last one up to x (left) or the first one from x
-/// (right). `no_left` and `no_right` mean that this side has none. In unsigned arithmetic their distance exceeds that
-/// of any voxel, because rows are shorter than 2^31.
+/// (right). `no_left` and `no_right` mean that the row has no target on this side. In unsigned arithmetic, their
+/// distance exceeds that of any voxel, because rows are shorter than 2^31.
 constexpr std::uint32_t no_left = 0x80000000U;
 constexpr std::uint32_t no_right = 0xffffffffU;
 

@@ -36,8 +36,8 @@ void copy_set(const RecordSet& from, const Context& context, RecordSet& to) {
   copy_floats(from.cluster_cones.sine, to.cluster_cones.sine);
 }
 
-/// Removes the reaches of sites (limits beyond which some surface point is closer). In the second order, that surface
-/// point may be excluded.
+/// Removes the reaches of sites (limits beyond which some surface point is closer). In the second order, the closer
+/// surface point may be excluded.
 void remove_reaches(SiteRecords& sites, const Context& context) {
   for (std::size_t kind = 0; kind < kind_count; ++kind) {
     RecordSet& set = sites.kinds[kind];
@@ -67,8 +67,8 @@ bool has_mixed_edges(const SiteTable& sites, const SecondLabels& labels) {
                      [&](const Segment& edge) { return labels.of_vertex(edge[0]) != labels.of_vertex(edge[1]); });
 }
 
-/// For each site, returns only those neighbours and faces all of whose labels the site has too. These bound the site's
-/// domain, whichever site is first.
+/// For each site, returns only the neighbours and faces that have no labels other than those of the site. They bound
+/// the site's domain for any first site.
 Adjacency without_other_labels(const FirstSites& first, const SecondLabels& labels) {
   Adjacency out;
   const Adjacency& all = first.adjacency;

@@ -18,8 +18,8 @@
 
 namespace blum::cpu {
 
-/// Result for a query. If the query lies outside of the engine's box, the result is that of the point of the box
-/// closest to the query.
+/// Result for a query. If the query lies outside of the engine's box, the result belongs to the point of the box that
+/// is closest to the query.
 struct FoundSite {
   Vec3d at;                 ///< The query.
   std::uint32_t query = 0;  ///< Index of the query.
@@ -67,7 +67,7 @@ class PointEngine {
   void for_each_group(std::span<const Vec3d> queries, const Context& context,
                       FunctionRef<void(const FoundGroup&)> use) const;
 
-  /// Returns true if the query lies in the engine's box, so that its result is not that of another point.
+  /// Returns true if the query lies in the engine's box, so that its result belongs to the query itself.
   [[nodiscard]] bool is_in_frame(const Vec3d& query) const { return box_.contains(query); }
 
   /// Returns an upper bound on the distance from a query to the surface, mesh units. The bound includes room for

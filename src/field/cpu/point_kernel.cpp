@@ -15,10 +15,10 @@ namespace {
 
 /// A cell with more clusters than this is divided before its records are found, if it can be divided.
 constexpr std::size_t most_clusters = 8000;
-/// If there are more clusters, or more candidates, per point than this, each point is left to a search of its own.
+/// If there are more clusters, or more candidates, per point than this, each point is left to a separate search.
 constexpr std::size_t clusters_per_point = 64;
 constexpr std::size_t candidates_per_point = 256;
-/// Points with at most this many candidates are not divided further, and all of the candidates are evaluated.
+/// A group of points with at most this many candidates is not divided further, and all candidates are evaluated.
 constexpr std::size_t few_candidates = 32;
 /// Two distances are equal within rounding if they differ by at most this, in the normalised frame.
 constexpr float tie = 2e-6F;

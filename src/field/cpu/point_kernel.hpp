@@ -28,8 +28,8 @@ struct MortonPoints {
   MortonOrder order;
 };
 
-/// Points that lie in one cube: a cell of some level. If a cell of the last level has too many points, this is a part
-/// of them.
+/// Points that lie in one cube: a cell of some level. If a cell of the last level has too many points, a PointCell
+/// contains a part of these points.
 struct PointCell {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -45,7 +45,7 @@ struct PointResults {
   /// Squared distance to a point of the surface, normalised. If `site` is known, the point is the closest one within
   /// rounding.
   Buffer<float> squared;
-  Buffer<std::uint32_t> site;   ///< dead_record if the point is left to a search of its own
+  Buffer<std::uint32_t> site;   ///< dead_record if the point is left to a separate search
   Buffer<std::uint32_t> other;  ///< another site as close within rounding; dead_record if none
 };
 

@@ -45,8 +45,8 @@ inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& quer
   return false;
 }
 
-/// Smallest cosine with which a sign is decided. Its angle lies between the pseudonormal (or its opposite) and the
-/// direction to the query.
+/// Smallest cosine at which a sign is decided. It is the cosine of the angle between the pseudonormal (or its opposite)
+/// and the direction to the query.
 inline constexpr float clear_side = 0.01F;
 /// The sign of a distance is not decided at distances below this, in the normalised frame.
 inline constexpr float smallest_side = 1e-6F;

@@ -16,10 +16,10 @@ namespace HWY_NAMESPACE {
 
 using OfSite = SecondLabels::OfSite;
 
-/// Surface points that bound the distance of the second site. "Apart" means that no site shares labels with both. If
-/// the sites of two points are apart, one of the two may be second, whichever site is first. So the second site is at
-/// most as far as the further of the two points. A single point suffices if its site may be second at all nodes of the
-/// box. Without points, there is no bound.
+/// Surface points that bound the distance of the second site. Two sites are "apart" if no site shares labels with both
+/// of them. If the sites of two points are apart, one of these sites may be second, for any first site. So the second
+/// site is at most as far as the further of the two points. A single point suffices if its site may be second at all
+/// nodes of the box. Without points, there is no bound.
 struct Bounds {
   std::array<Vec3f, 2> point{};
   std::array<OfSite, 2> labels{};

@@ -360,7 +360,7 @@ struct SecondLeaf {
   const std::uint32_t* first;  ///< per node: first site, or dead_record
   float* squared;              ///< per node: below 0 without a first site, so that no candidate wins
   std::uint32_t* id;
-  std::uint64_t has_labels = 0;  ///< one bit per vector of nodes with labels: that of its first node
+  std::uint64_t has_labels = 0;  ///< one bit per vector of nodes with labels: the bit of the vector's first node
 
   SecondLeaf(SecondCell& cell, std::size_t leaf)
       : first(cell.first.data() + leaf * leaf_nodes),

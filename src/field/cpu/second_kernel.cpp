@@ -173,7 +173,8 @@ class SecondWorker {
     if (!take_nearest([](const OfSite&) { return true; })) return parent;
     if (only_ != nullptr) return out;
     if (take_nearest([&](const OfSite& labels) { return job_.are_apart(out.labels[0], labels); })) return out;
-    // One of the parent's points serves as the further one if its site is apart from that of the child's closest point.
+    // A point of the parent serves as the further point if its site is apart from the site of the child's closest
+    // point.
     for (std::size_t k = 0; k < parent.count; ++k) {
       if (!job_.are_apart(out.labels[0], parent.labels[k])) continue;
       out.point[1] = parent.point[k];
@@ -388,7 +389,7 @@ class SecondWorker {
     }
   }
 
-  /// Returns the largest second distance of the nodes so far; a huge value if some node has none yet.
+  /// Returns the largest second distance of the nodes so far; a huge value if some node has no second site yet.
   static float furthest(const SecondLeaf& state) {
     V worst = hn::Zero(d);
     for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
@@ -489,7 +490,7 @@ class SecondWorker {
       open = hn::Or(open, has_none);
       hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.squared.data() + node);
       const VI id = hn::Load(di, cell_.id.data() + node);
-      // Nodes that no site has claimed keep the id `nobody`, which report_open() looks for.
+      // Nodes without a second site keep the id `nobody`, which report_open() searches for.
       const auto is_settled = hn::RebindMask(di, hn::AndNot(has_none, is_beyond));
       hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.id.data() + node);
     }
@@ -517,7 +518,7 @@ class SecondWorker {
     }
   }
 
-  /// Adds nodes that no site has claimed, although some site may be second, to `unsettled`.
+  /// Adds to `unsettled` the nodes for which no second site was found, although some site may be second.
   void report_open(const NodeBox& box, std::size_t at, std::size_t node) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
       const std::size_t place = at + i / 4 * leaf_nodes + i % 4;

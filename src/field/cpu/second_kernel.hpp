@@ -15,8 +15,8 @@ namespace blum::cpu {
 
 /// Input of all tiles of the second order, and the memory for their results.
 struct SecondJob {
-  /// Sites that may be second, as records without reaches. Beyond a site's reach some surface point is closer, but that
-  /// point may be excluded here. Its request is unused, except for the grid.
+  /// Sites that may be second, as records without reaches. Beyond a site's reach, some surface point is closer, but
+  /// this point may be excluded in the second order. Its request is unused, except for the grid.
   FieldJob field;
   SecondRequest request;
   /// Labels of every site. The planes that bound a record's domain come from sites with the same labels only. If
@@ -29,7 +29,8 @@ struct SecondJob {
   std::span<const std::uint32_t> first_other;
   std::span<const std::uint32_t> others;
 
-  /// Returns true if no site shares labels with both. Then one of the two sites may be second, whichever site is first.
+  /// Returns true if no site shares labels with both a and b. Then one of the two sites may be second, for any first
+  /// site.
   [[nodiscard]] bool are_apart(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) const;
 };
 
@@ -44,7 +45,7 @@ class SecondScratch {
   struct Impl;
   Impl& impl() { return *impl_; }
 
-  /// Linear indices of nodes that no site claimed, although some site may be second.
+  /// Linear indices of nodes for which no second site was found, although some site may be second.
   std::vector<std::size_t> unsettled;
 
  private:

@@ -29,9 +29,9 @@ struct LinkSegment {
 /// Links of all vertices. A vertex's link consists of the edges opposite to it in its triangles, and of the other ends
 /// of its edges. An end is listed only if the opposite edges may not represent it.
 ///
-/// The second order excludes every site that touches a vertex of the first site. The domains of sites along this hole
-/// are bounded by planes from excluded sites. So these sites must be evaluated without such planes. They lie in the
-/// links of the first site's vertices.
+/// The second order excludes every site that touches a vertex of the first site, which leaves a hole in the surface.
+/// Planes from excluded sites bound the domains of the sites along this hole. So the sites along the hole must be
+/// evaluated without such planes. They lie in the links of the first site's vertices.
 struct SecondLinks {
   /// First the segments of all edges, in their order, then all vertices, as points.
   Buffer<LinkSegment> segments;

@@ -65,8 +65,8 @@ struct SiteRecords {
 };
 
 /// Builds the records of every site that can be closest to a node. A vertex whose domain is only the vertex itself gets
-/// no record. Edges and faces of negligible extent get none either; their borders represent them. Reuses the memory of
-/// `out`.
+/// no record. Edges and faces of negligible extent get no record, either; their borders represent them. Reuses the
+/// memory of `out`.
 /// @param positions  of all vertices, in the normalised frame.
 /// Cost: O(sites), threaded. Method: docs/theory/fields.md.
 void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,

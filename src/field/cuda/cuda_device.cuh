@@ -99,8 +99,8 @@ __global__ void __launch_bounds__(Body::threads, Body::blocks_per_processor)
   body(CudaBlock<Body::threads>{}, shared, blockIdx.x);
 }
 
-/// Queues all work on one stream. To wait for all of it, use download() or wait(); for the work before a mark, await().
-/// Only fetch() copies on a separate stream.
+/// Queues all work on one stream. The functions download() and wait() wait for all queued work. The function await()
+/// waits for the work before a mark. Only fetch() copies on a separate stream.
 class CudaDevice {
  public:
   template <class T>

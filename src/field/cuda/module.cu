@@ -36,7 +36,7 @@ class Event {
 };
 
 /// Queues work on its own stream, or on a stream that the caller lends. All work uses the same memory, so each task
-/// waits for the one before.
+/// waits for the previous task.
 class CudaQueue {
  public:
   CudaQueue() : device_(stream_.get()) {}
@@ -55,8 +55,8 @@ class CudaQueue {
       (void)cudaEventSynchronize(event_of(finished_));
       ++finished_;
     }
-    // If the event cannot be recorded, wait for the whole device. Otherwise the older event of this slot would stand
-    // for this work.
+    // If the event cannot be recorded, wait for the whole device. Otherwise, waiting for this work would wait for the
+    // older event of this slot.
     if (cudaEventRecord(event_of(queued_++), device_.stream()) != cudaSuccess) (void)cudaDeviceSynchronize();
     device_.use(stream_.get());
   }

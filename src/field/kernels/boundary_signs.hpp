@@ -15,7 +15,8 @@ namespace blum::kernels {
 struct BoundaryEdge {
   std::uint32_t from;
   std::uint32_t to;
-  double count;  ///< traversals by triangles from `from` to `to`, minus those in the other direction
+  double count;  ///< number of traversals by triangles from `from` to `to`, minus the number of traversals from `to` to
+                 ///< `from`
 };
 
 struct FlagBoundary {
@@ -303,10 +304,10 @@ class BoundaryTerms {
 /// Negates the distances of nodes whose winding number is above level + 1/2. One thread block processes a tile of 8^3
 /// nodes.
 ///
-/// In a tile without triangles, winding numbers differ by at most the bound on their gradient times the distance. Most
-/// of these tiles evaluate one node. In other tiles one node per row is evaluated. Along the row the winding number
-/// changes by the counted crossings, and otherwise by at most this bound. If that does not decide a node, the node is
-/// evaluated separately.
+/// In a tile without triangles, winding numbers differ by at most the bound on their gradient times the distance. In
+/// most of these tiles, one node is evaluated. In other tiles, one node per row is evaluated. Along the row the winding
+/// number changes by the counted crossings, and otherwise by at most this bound. If that does not decide a node, the
+/// node is evaluated separately.
 ///
 /// Cost: (number of tiles, plus rows of tiles with triangles) times the number of boundary edges. If the boundary is
 /// everywhere, as in soups: nodes times boundary edges.

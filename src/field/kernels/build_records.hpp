@@ -121,7 +121,7 @@ struct ReachSearch {
   const Vec3f* points;
   std::uint32_t count;
 
-  /// Returns this bound for one site.
+  /// Returns the bound rho for one site.
   /// @param directions  one or two unit vectors: the domain's only direction, or the two that bound it.
   BLUM_HD float reach(const Vec3f* corners, int corner_count, const Vec3f* directions, int direction_count,
                       std::uint32_t rank) const {

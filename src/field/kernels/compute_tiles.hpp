@@ -67,7 +67,8 @@ BLUM_HD inline void offer_face(const Record& record, const Vec3f& node, Winner& 
   winner.offer(height * height, record.id);
 }
 
-/// Offers a site to a node. The site wins if the node lies in its domain and the site is closer than the one so far.
+/// Offers a site to a node. The site wins if the node lies in its domain and the site is closer than the closest site
+/// so far.
 BLUM_HD inline void offer_site(std::uint32_t kind, const Record& record, const Vec3f& node, Winner& winner) {
   if (kind == vertex_kind) {
     offer_vertex(record, node, winner);

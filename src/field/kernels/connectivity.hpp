@@ -71,7 +71,7 @@ struct ListNamed {
   }
 };
 
-/// Computes a key for each side of each triangle, and for each segment. It consists of both ends, the smaller one
+/// Computes a key for each side of each triangle, and for each segment. The key consists of both ends, the smaller end
 /// first. Sides whose ends are equal are sorted to the end.
 struct BorderKeys {
   DeviceMesh mesh;

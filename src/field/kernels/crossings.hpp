@@ -197,8 +197,8 @@ struct ApplyWinding : RowsOfWarps {
   }
 };
 
-/// Finds the signs of slabs by winding numbers. They are sums of counted crossings and, for meshes with a boundary, the
-/// terms of its edges.
+/// Finds the signs of slabs by winding numbers. Winding numbers are sums of counted crossings and, for meshes with a
+/// boundary, of the terms of the boundary's edges.
 template <class Device>
 class CrossingSigns {
  public:

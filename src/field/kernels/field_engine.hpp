@@ -179,7 +179,7 @@ class FieldEngine {
   /// @param request     request with host memory. The sites are written as feature ids.
   /// @param is_stopped  callable: returns true to stop early.
   /// @param report      callable: receives the fraction done.
-  /// @return  true if the distances have signs. They have those of winding numbers, unless there are too many boundary
+  /// @return  true if the distances have signs, which winding numbers decide. False if there are too many boundary
   ///          edges to sum up at every node.
   /// @throws InvalidGrid, Cancelled, and the device's errors.
   template <class IsStopped, class Report>
@@ -250,8 +250,8 @@ class FieldEngine {
     typename Device::template Array<std::uint32_t> site;
   };
 
-  /// Replaces sites in the device's memory: each by the triangle with the smallest index that contains it. Queues the
-  /// work.
+  /// Replaces each site in the device's memory by the triangle with the smallest index that contains the site. Queues
+  /// the work.
   void show_triangles(std::size_t count, std::uint32_t* site) {
     if (!has_vertex_triangles_) {
       vertex_triangle_.resize(mesh_.vertex_count);

@@ -21,12 +21,12 @@ struct ColumnPass {
   std::uint32_t columns;
   std::uint32_t band_rows;  ///< rows of each band except the last one
   std::uint32_t bands;
-  /// In: closest site in the row (y pass) or plane (z pass). Out: closest site also over the column.
+  /// On input, the closest site in the row (y pass) or plane (z pass). On output, the closest site in the column, too.
   std::uint32_t* site;
   /// One 32-bit slot per voxel. The slots use the memory of the distances, so their type is float.
   float* slots;
   // The following two arrays have one entry per band and column. They describe the first run (rows of one kind) in the
-  // band. It may continue the last run of the band before.
+  // band. This run may continue the last run of the previous band.
   std::uint32_t* bottom;  ///< Slot of the run's lowest entry in the band.
   std::uint32_t* change;  ///< Row at which the run ends.
 
@@ -149,16 +149,16 @@ class Column {
 //
 // A run consists of consecutive rows of one kind (selected or not). The voxel next to a run is of the other kind. It
 // has cost 0 and hides everything beyond it from the run's rows. So each run has a separate envelope: of its own rows,
-// and of the voxels next to its ends ("walls", which need no memory). Inside and outside of a signed transform thus
-// need only one pass, with the work and memory of one. In an unsigned transform, voxels in runs of selected voxels are
-// their own sites.
+// and of the voxels next to its ends ("walls", which need no memory). A signed transform thus computes inside and
+// outside in one pass, with the work and memory of an unsigned pass. In an unsigned transform, voxels in runs of
+// selected voxels are their own sites.
 //
 // A thread processes a column, or one band of it if there are few columns. Neighbouring threads process neighbouring
 // columns, so that a warp reads and writes whole cache lines. The kernels are those of parallel banding (Cao, Tang,
 // Mohamed, Tan 2010).
 //   BuildEnvelopes  makes the envelopes of each band's rows. Reads 4 + 1/8 bytes per voxel, writes at most 4.
-//   MergeBands      drops parabolas that parabolas of other bands hide. These are few.
-//   AssignSites     walks down the envelopes. Reads at most 4 + 1/8 bytes per voxel, writes 4.
+//   MergeBands drops the few parabolas that parabolas of other bands hide. AssignSites walks down the envelopes. Reads
+//   at most 4 + 1/8 bytes per voxel, writes 4.
 // An entry (a parabola of the envelope) needs 4 bytes, because it is computed again from the linear index of its site.
 // Sites are read and written in whole cache lines. Envelopes of neighbouring columns differ in height. So the number of
 // 32-byte sectors that 32 threads write is 1 to 4 times that for 32 contiguous entries. (This was counted for balls,

@@ -222,7 +222,8 @@ struct BandTuning {
 /// (distances). Each access to the mask adds 1/8. The image is read once. The passes use the memory of the distances as
 /// working memory.
 ///
-/// The result is byte for byte that of the CPU, because neither fuses multiplications with additions.
+/// The result is byte for byte that of the CPU, because neither the CPU nor the device fuses multiplications with
+/// additions.
 template <class Device>
 class ImageTransform {
  public:
@@ -279,7 +280,7 @@ class ImageTransform {
   }
 
   /// Writes one distance and one site per voxel. At least one voxel must be selected. In a signed transform, at least
-  /// one must not be. Otherwise the distances are infinite, or equal to the band.
+  /// one voxel must be unselected, too. Otherwise, the distances are infinite, or equal to the band.
   void run(float* distance, std::uint32_t* site) {
     request_.integer ? run_with(IntegerCosts(request_), distance, site) : run_with(RealCosts(request_), distance, site);
   }

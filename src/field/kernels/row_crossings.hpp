@@ -9,7 +9,7 @@
 
 // Arithmetic of SignScan (field/sign/scan.hpp) and of its counterpart on devices. SignScan explains why it is exact. No
 // multiplication is fused with an addition: triangles that share an edge must get bitwise equal points where a slice
-// cuts it. On the host, files that include this are compiled without contraction.
+// cuts it. On the host, files that include this header are compiled without contraction.
 namespace blum::kernels {
 
 /// Converts positions to node units: multiples of the grid's spacings, relative to node (0, 0, 0).
@@ -31,8 +31,8 @@ struct NodeUnits {
   [[nodiscard]] BLUM_HD Vec3d position(const Vec3d& world) const { return inverse.transposed_times(world - origin); }
 };
 
-/// Range of integers k in [0, size) with from <= k < to. Slices (or rows) in this range have one end at or below them,
-/// and one above.
+/// Range of integers k in [0, size) with from <= k < to. For each slice (or row) in this range, one end is at or below
+/// the slice, and the other end is above it.
 template <class Index>
 struct Cuts {
   Index begin, end;

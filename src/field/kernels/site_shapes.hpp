@@ -65,7 +65,7 @@ BLUM_HD inline void write_face(const FaceShape& shape, Record& record) {
   store(record, FaceColumns::minus_v, unit(cross(shape.to_u, shape.normal), shape.doubled_area));
 }
 
-/// Edge, and the unit directions that lead from it into up to two faces.
+/// Edge, and the unit directions that lead from the edge into its faces, at most two.
 struct EdgeShape {
   Vec3d start, end, tangent;
   double length = 0;

@@ -32,11 +32,11 @@ struct Part {
   double volume = 0;  ///< of the cones from the middle of the box over the triangles
 };
 
-/// Winding numbers at places of a part, each the mean of both sides.
+/// Winding numbers at sample points of a part. Each number is the mean of the winding numbers on both sides.
 struct Surroundings {
   double mean = 0;
-  double outward_share = 0;  ///< share of places with a positive number
-  bool has_inside = false;   ///< some place has a side with a winding number above 1/2
+  double outward_share = 0;  ///< share of sample points with a positive winding number
+  bool has_inside = false;   ///< true if some sample point has a winding number above 1/2 on one side
 };
 
 Vec3d area_vector(const MeshView& mesh, const Triangle& t) {
@@ -86,7 +86,7 @@ bool has_negative_volume(const Part& part) {
   return surrounds_a_volume(part) && part.volume < -1e-9 * part.area * part.box.diagonal();
 }
 
-/// Returns place k of a sequence that fills a triangle evenly.
+/// Returns point k of a sequence that fills a triangle evenly.
 Vec3d place_in(const MeshView& mesh, const Triangle& t, std::size_t k) {
   // The steps of the two-dimensional golden sequence, see Roberts, "The unreasonable effectiveness of quasirandom
   // sequences", 2018.
@@ -103,7 +103,7 @@ Vec3d place_in(const MeshView& mesh, const Triangle& t, std::size_t k) {
   return a + (mesh.vertices[t[1]] - a) * u + (mesh.vertices[t[2]] - a) * v;
 }
 
-/// Examines places that are spread evenly over the area of a part.
+/// Examines sample points that are spread evenly over the area of a part.
 Surroundings surroundings(const MeshView& mesh, const Part& part, const WindingNumber& winding, double offset,
                           std::size_t places) {
   Surroundings out;
@@ -130,8 +130,8 @@ Surroundings surroundings(const MeshView& mesh, const Part& part, const WindingN
   return out;
 }
 
-/// Returns true if a part certainly faces into the solid. The numbers of parts that face outwards are positive. Those
-/// of flat sheets are close to 0.
+/// Returns true if a part certainly faces into the solid. The winding numbers of parts that face outwards are positive.
+/// Those of flat sheets are close to 0.
 bool faces_inwards(const Part& part, const Surroundings& around) {
   if (!part.is_consistent || !surrounds_a_volume(part)) return false;
   if (part.is_closed && has_negative_volume(part)) return around.mean < -0.1;
@@ -204,7 +204,7 @@ class Repairer {
     turned_ = std::move(repaired->triangles);
   }
 
-  /// Shells that cross have no depth. So the winding numbers decide about those with a negative volume.
+  /// Shells that cross have no depth. So winding numbers decide if crossing shells with a negative volume are reversed.
   void examine_crossing(FunctionRef<bool(const MeshView&)> crosses) {
     if (facts_.components < 2) return;
     const std::vector<Triangle> before(view_.triangles.begin(), view_.triangles.end());
@@ -252,7 +252,7 @@ class Repairer {
     const WindingNumber winding(view_, *sites_, context_);
     Box3 box;
     for (const Part& part : parts) box.extend(part.box);
-    // Many parts share a fixed number of places, so that the cost stays that of the winding numbers.
+    // Many parts share a fixed number of sample points, so that the total cost stays about that of a WindingNumber.
     const std::size_t places = std::clamp<std::size_t>(16384 / parts.size(), 16, 128);
     std::vector<Triangle> triangles(view_.triangles.begin(), view_.triangles.end());
     bool is_any = false;

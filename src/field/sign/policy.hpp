@@ -26,8 +26,8 @@ struct Plan {
   SignRule rule = SignRule::none;
   std::string reason;  ///< one sentence
   std::vector<Warning> warnings = {};
-  /// Triangles to be used instead of those of the mesh: some of these face the wrong way. Empty if all are used as they
-  /// are.
+  /// Triangles that replace those of the mesh, because some triangles of the mesh face the wrong way. Empty if the
+  /// triangles of the mesh are used.
   std::vector<Triangle> triangles = {};
   Method method = Method::none;
   /// With `crossings`, points with a winding number above this level are inside. The level is 0. For an inside-out mesh

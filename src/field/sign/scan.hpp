@@ -18,10 +18,10 @@ namespace blum {
 ///
 /// The result is exact. Every slice cuts the triangles, and every row crosses these cuts. Triangles that share an edge
 /// (two vertices at the same positions) get bitwise the same point where a slice cuts the edge. A point exactly on a
-/// slice or row counts as below it, for all triangles. So the cuts form closed chains, whatever the rounding. Rounding
-/// moves chains by about 1e-15 of the diagonal of the box around mesh and grid. Nodes further than that from the
-/// surface get the exact winding number. This also holds if the mesh crosses itself, folds, or has triangles without
-/// area. Distances and sites are not used.
+/// slice or row counts as below it, for all triangles. So the cuts form closed chains, for any rounding errors.
+/// Rounding moves chains by about 1e-15 of the diagonal of the box around mesh and grid. Nodes further than that from
+/// the surface get the exact winding number. The winding numbers are also exact if the mesh crosses itself, folds, or
+/// has triangles without area. Distances and sites are not used.
 class SignScan {
  public:
   /// Finds the crossings of a mesh.
@@ -34,8 +34,8 @@ class SignScan {
 
   /// Negates the distances of nodes inside.
   /// @param field  unsigned distances for the same grid. Zeros are not changed.
-  /// @param level  nodes with a winding number above it are inside. Use 0, or -1 to follow the normals of an inside-out
-  ///               mesh.
+  /// @param level  nodes with a winding number above `level` are inside. Use 0, or -1 to follow the normals of an
+  ///               inside-out mesh.
   /// Cost: one pass over the distances of nodes inside.
   void apply(Field& field, int level, const Context& context) const;
 

@@ -21,8 +21,8 @@ constexpr std::size_t few_triangles = 256;
 /// If the winding number may change by more than this over a group, the group is split.
 constexpr double large_change = 1;
 
-/// Answer of an evaluated point. It also holds for another point if the winding number changes by less than `margin`
-/// between the two.
+/// Answer of an evaluated point. The answer also holds for another point if the winding number changes by less than
+/// `margin` between the two points.
 template <class Value>
 struct Answer {
   Value value;
@@ -120,7 +120,7 @@ class SharedAnswers {
   /// Per point: distance within which its answer holds, unless a triangle lies between. Negative if the point has no
   /// answer yet.
   std::array<double, most_shared> reach_;
-  /// Per point: part of another point's reach that must be left when it takes over that point's answer.
+  /// Per point: part of another point's reach that must remain if the answer of that point is taken over.
   std::array<double, most_shared> needed_;
   std::array<Value, most_shared> value_;
   InlineList<std::uint16_t, 64> asked_;

@@ -26,8 +26,8 @@ inline constexpr std::uint32_t no_patch = 0xffffffff;
 /// is not its neighbour.
 struct Patches {
   std::uint32_t count = 0;
-  /// Per site: the patch that contains all triangles at the site. It is no_patch if these are not all in one patch. It
-  /// is also no_patch if another vertex or edge coincides with the site.
+  /// Per site: the patch that contains all triangles at the site; no_patch if these triangles are not all in one patch.
+  /// It is also no_patch if another vertex or edge coincides with the site.
   std::vector<std::uint32_t> of_site;
   /// Largest triangle of each patch.
   std::vector<std::uint32_t> largest;
@@ -67,7 +67,7 @@ std::vector<bool> find_shared_places(const MeshView& mesh) {
   return is_shared;
 }
 
-/// Combines a patch with the patch of a site so far. If they differ, the result is no_patch.
+/// Combines a patch with the patch of a site so far. If the two patches differ, the result is no_patch.
 void add(std::uint32_t patch, bool is_first, std::uint32_t& common) {
   if (is_first) common = patch;
   if (common != patch) common = no_patch;

@@ -16,15 +16,15 @@
 
 namespace blum::sign {
 
-/// Finds sides according to a sign plan. It copies the data it needs, so the mesh may be destroyed.
+/// Finds sides according to a sign plan. Sides copies the data that it needs, so the mesh may be destroyed.
 ///
 /// With whole winding numbers, a query's number is that of the side of the surface that the query faces. The reason:
 /// nothing lies between the query and its closest point. Triangles that no other triangle touches are therefore
 /// collected in patches, connected across edges of exactly two triangles. In front of a patch the winding number is the
-/// same everywhere; behind it, it is greater by one. It is computed once per patch. The pseudonormal of a query's
-/// closest site decides which side of the patch the query faces. The winding number of some queries must be evaluated
-/// directly. These are queries closest to a triangle that others touch or cross, or to a patch with an uncertain
-/// number.
+/// same everywhere; behind it, it is greater by one. The winding number in front is computed once per patch. The
+/// pseudonormal of a query's closest site decides which side of the patch the query faces. The winding number of some
+/// queries must be evaluated directly. These are queries closest to a triangle that others touch or cross, or to a
+/// patch with an uncertain number.
 class Sides {
  public:
   /// @param bvh  search tree of this mesh, used to find points in front of patches.
@@ -35,8 +35,8 @@ class Sides {
   /// Returns true if a query is inside. The query must not be on the surface. Allocates nothing.
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const;
 
-  /// Returns the same if the closest site decides it. Otherwise returns nullopt, and the caller must decide: inside if
-  /// the query's own winding number is above 1/2.
+  /// Returns the result of is_inside() if the closest site decides it. Otherwise returns nullopt. The caller must then
+  /// decide: the query is inside if its winding number is above 1/2.
   [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {
     if (method_ == Method::none) return false;
     // Outside of the mesh's box the side is known. The closest site could mislead there: far away, rounding may choose
@@ -65,7 +65,8 @@ class Sides {
   [[nodiscard]] std::size_t open_site_count() const;
 
  private:
-  /// Does the same for a query whose closest site is known to face away from it, or towards it.
+  /// Returns the result of is_inside_by_site() for a query whose closest site is known to face away from the query, or
+  /// towards it.
   [[nodiscard]] std::optional<bool> is_inside_by_patch(const Vec3d& query, SiteId site, bool is_behind) const;
   void find_patches(const MeshView& mesh, const SiteTable& sites, const Bvh& bvh, const Context& context);
 

@@ -179,8 +179,8 @@ void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, Blo
   out.path[part] = static_cast<std::uint16_t>(2 * steps);
 }
 
-/// For a lone node (the only one of its part), returns a neighbour across a face or space diagonal. The step to it must
-/// be safe, and it must not be a lone node. Returns block_nodes if there is none.
+/// For a lone node (the only node of its part), returns a neighbour across a face or space diagonal. The step to this
+/// neighbour must be safe, and it must not be a lone node. Returns block_nodes if there is none.
 std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits, const BlockParts& parts,
                                std::size_t node) {
   const auto x = static_cast<int>(node % 8), y = static_cast<int>(node / 8 % 8), z = static_cast<int>(node / 64);
@@ -204,7 +204,7 @@ std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits,
   return block_nodes;
 }
 
-/// Adds each lone node to the part of such a neighbour, and renumbers the parts without gaps.
+/// Adds each lone node to the part of its diagonal_neighbour(), and renumbers the parts without gaps.
 void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockParts& parts) {
   std::array<std::uint16_t, block_nodes> target;
   bool any = false;

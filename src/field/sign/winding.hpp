@@ -22,8 +22,8 @@ struct WindingSignCounts {
 /// Nodes that certainly share a sign are grouped first, and one node per group is evaluated. Distances are 1-Lipschitz:
 /// no triangle separates two nodes whose distances add up to more than the distance between them. Along such steps the
 /// winding number changes only through the mesh's boundary. WindingNumber::gradient_bound() bounds this change. Steps
-/// are joined as long as the sum of the bounds leaves the side decidable. On a closed mesh the bound is 0. Near the rim
-/// of a hole every node is evaluated, so that no sign leaks through the hole.
+/// are joined while the sum of their bounds still excludes a change of side. On a closed mesh, the bound is 0. Near the
+/// rim of a hole every node is evaluated, so that no sign leaks through the hole.
 ///
 /// @param field  unsigned distances of this mesh; nodes beyond the band have +band. The error may be at most 1e-6 of
 ///               the diagonal of the box around mesh and grid. Only `distance` is changed.
@@ -31,7 +31,7 @@ struct WindingSignCounts {
 /// Cost: about two passes over the distances, and one winding number for every set of nodes.
 WindingSignCounts apply_winding_sign(Field& field, const MeshView& mesh, const WindingNumber& winding,
                                      const Context& context);
-/// Does the same, but also builds the WindingNumber.
+/// Does the same as the function above, but also builds the WindingNumber.
 WindingSignCounts apply_winding_sign(Field& field, const MeshView& mesh, const SiteTable& sites,
                                      const Context& context);
 
