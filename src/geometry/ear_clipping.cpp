@@ -35,8 +35,8 @@ class PointTree {
     for (std::uint32_t node = leaf; node > 0; node /= 2) --nodes_[node].count;
   }
 
-  /// Returns true if a corner of the tree lies in the triangle or on its edges. Corners at exactly the position of one
-  /// of its own corners are ignored: the ends of bridges to holes coincide.
+  /// Returns true if a corner of the tree lies in the triangle or on its edges. Corners at exactly the position of a
+  /// corner of the triangle are ignored, because the ends of bridges to holes coincide.
   /// @param work_left  reduced by the number of boxes and corners visited.
   [[nodiscard]] bool any_inside(const std::array<Point, 3>& t, std::int64_t& work_left) {
     stack_.assign(1, 1);
@@ -92,9 +92,9 @@ class PointTree {
     build(2 * index + 1, middle, end);
   }
 
-  /// Returns true if the box certainly contains no point of the triangle. This is so if it does not touch the
-  /// triangle's bounding box, or lies completely to the right of some edge. The latter is decided by the box's corner
-  /// furthest to the left.
+  /// Returns true if the box certainly contains no point of the triangle. This is certain if the box does not touch the
+  /// triangle's bounding box, or lies completely to the right of some edge. The corner of the box that is furthest to
+  /// the left of an edge decides if the box lies to its right.
   static bool is_apart(const Node& box, const std::array<Point, 3>& t) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (box.upper[axis] < std::min({t[0][axis], t[1][axis], t[2][axis]})) return true;
@@ -244,7 +244,8 @@ class EarClipper {
       if (--work_left_ < 0) return false;
       if (links_[twin].next == gone) continue;
       // The polygon passes through the position of the ear's tip again: outside of the ear, through it, or along both
-      // of its edges. In the last case the tip alone does not determine on which side of them the inside is.
+      // of its edges. If it passes along both edges, the tip alone does not determine on which side of the edges the
+      // inside is.
       const Side before = side_of(points_[links_[twin].previous], a, b, c);
       const Side after = side_of(points_[links_[twin].next], a, b, c);
       if (before == Side::between || after == Side::between) return false;
@@ -267,7 +268,7 @@ class EarClipper {
   [[nodiscard]] bool is_wound_around(std::uint32_t corner) {
     const Link link = links_[corner];
     const std::array<const Point*, 3> terms = {&points_[corner], &points_[link.previous], &points_[link.next]};
-    // Terms are compared in order; the first one that differs decides, by its sign.
+    // Terms are compared in order; the sign of the first difference decides.
     const auto is_above = [&](const Point& p) {
       const auto term = std::find_if(terms.begin(), terms.end(), [&](const Point* q) { return (*q)[1] != p[1]; });
       return term != terms.end() && p[1] > (**term)[1];

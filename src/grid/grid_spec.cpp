@@ -50,7 +50,7 @@ Box3 padded(const Box3& box, double padding) {
   return {box.lower - Vec3d{pad, pad, pad}, box.upper + Vec3d{pad, pad, pad}};
 }
 
-/// Returns the smallest grid with this spacing that covers the box. It is centred on the box.
+/// Returns the smallest grid with this spacing that covers the box. The grid is centred on the box.
 GridSpec cover(const Box3& box, double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing)) throw InvalidGrid("the grid's spacing must be positive and finite");
   GridSpec grid;

@@ -75,7 +75,7 @@ ImageValues counted(std::span<const T> values, const Context& context) {
   return out;
 }
 
-/// Returns the shortest text from which this value of its own type is read back.
+/// Returns the shortest text that parses back to exactly this value of its type.
 template <class T>
 std::string value_text(T value) {
   std::array<char, 32> text{};
@@ -89,7 +89,7 @@ struct Fractions {
   std::uint64_t near = 0;             ///< number of voxels within the tolerance
   T example{};                        ///< the first of them
   std::optional<T> far = {};          ///< first value beyond the tolerance, or beyond the range of labels
-  std::optional<T> near_wanted = {};  ///< first value within the tolerance of a label that is asked for
+  std::optional<T> near_wanted = {};  ///< first value within the tolerance of a requested label
 };
 
 template <class T>
@@ -134,7 +134,8 @@ std::optional<RoundedLabels> rounded(std::span<const T> values, std::span<const 
   return RoundedLabels{std::move(out), {WarningCode::rounded, text}};
 }
 
-/// Returns ", for example V, which is not a whole number" for the first such value, or an empty text.
+/// Returns ", for example V, which is not a whole number" for the first fractional value V; empty if all values are
+/// whole.
 std::string fraction_text(const VoxelImageView& image) {
   return std::visit(
       [&]<class T>(const std::span<const T>& values) -> std::string {

@@ -40,7 +40,7 @@ class RunComponents {
     }
   }
 
-  /// Joins the runs that touch the border of the box with the outside, which is a component of its own.
+  /// Joins the runs that touch the border of the box with the outside, which is a separate component.
   void join_border() {
     ++count_;
     const auto outside = static_cast<std::uint32_t>(runs_.size());

@@ -27,9 +27,9 @@ constexpr std::size_t grain = 4096;
 constexpr double steepness = 8;       // exponent of a neighbour's weight, as in Yuksel 2015
 constexpr double floor_share = 0.65;  // distances below this share of the expected distance count only partly
 constexpr double floor_power = 1.5;
-/// The share to which distances below the floor count. In Yuksel 2015 it is 0. If the two sides of a thin plate are
-/// closer together than neighbouring points, all points have neighbours below the floor. Neighbours at almost no
-/// distance must then be removed first.
+/// The share to which distances below the floor count. In Yuksel 2015, this share is 0. If the two sides of a thin
+/// plate are closer together than neighbouring points, all points have neighbours below the floor. Neighbours at almost
+/// no distance must then be removed first.
 constexpr double below_floor = 0.3;
 
 /// Points, sorted into the cells of a grid. A cell is as wide as the distance within which points are neighbours.
@@ -111,7 +111,7 @@ class Weight {
 };
 
 /// Selects points at nearly equal distances from each other, by weighted sample elimination (Yuksel 2015). Repeatedly,
-/// the point with the largest sum of weights is removed: the one with the most and closest neighbours.
+/// the point with the largest sum of weights is removed. This point has the most and closest neighbours.
 /// @param area  area of the surface that the points lie on.
 /// @return      indices of `count` points, in rising order.
 /// @throws Cancelled. Cost: 0.6 us per point, on one core.

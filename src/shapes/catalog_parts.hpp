@@ -15,7 +15,7 @@ namespace blum::detail {
 
 using Betti = std::optional<std::array<std::int64_t, 3>>;
 
-/// Groups of shapes of the catalog. Each is defined in a file of its own.
+/// Groups of shapes of the catalog. Each group is defined in a separate file.
 [[nodiscard]] std::vector<ShapeInfo> round_shapes();
 [[nodiscard]] std::vector<ShapeInfo> machined_shapes();
 [[nodiscard]] std::vector<ShapeInfo> loose_shapes();

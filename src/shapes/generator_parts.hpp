@@ -28,7 +28,7 @@ void require_triangle_count(double count);
 void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 
 /// A ring of vertices of a surface. It is counter-clockwise around the direction from one ring to the next. All rings
-/// of a surface have the same number of vertices. Two poles close the surface.
+/// of a surface have the same number of vertices. Two poles, at the first and the last ring, close the surface.
 struct Ring {
   std::vector<Vec3d> points;
 };

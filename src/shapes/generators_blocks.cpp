@@ -92,8 +92,8 @@ TriangleMesh surface_of(const Blocks& blocks, Position position) {
   return mesh;
 }
 
-/// Returns true if cube (x, y, z) belongs to the Menger sponge. It does not if two of its coordinates have the digit 1
-/// at the same position in base 3.
+/// Returns true if cube (x, y, z) belongs to the Menger sponge. The cube does not belong to it if two coordinates have
+/// the digit 1 at the same position in base 3.
 bool is_in_menger(int x, int y, int z) {
   for (; x > 0 || y > 0 || z > 0; x /= 3, y /= 3, z /= 3) {
     if ((x % 3 == 1) + (y % 3 == 1) + (z % 3 == 1) >= 2) return false;

@@ -14,8 +14,8 @@
 namespace blum::detail {
 namespace {
 
-/// A solid that consists of boxes and triangular prisms. Where two of them touch, they must have an equal face. Such
-/// common faces are removed, and the other faces are the boundary. Corners with equal coordinates are one vertex.
+/// A solid that consists of boxes and triangular prisms. If two of these parts touch, they must have an equal face.
+/// Such common faces are removed, and the other faces are the boundary. Corners with equal coordinates are one vertex.
 class PrismComplex {
  public:
   /// Adds an axis-aligned box.

@@ -54,9 +54,9 @@ KnotFrame knot_frame(const TorusKnotOptions& options, double turn) {
   return {radial * distance + Vec3d{0, 0, options.wind_radius * std::sin(wind)}, velocity / length(velocity), normal};
 }
 
-/// Returns the largest radius at which a tube around a closed curve does not touch itself, computed from samples. It is
-/// the least radius of a circle that is tangent to the curve at one sample and contains another sample (Gonzalez,
-/// Maddocks 1999).
+/// Returns the largest radius at which a tube around a closed curve does not touch itself, computed from samples. This
+/// radius is the least radius of a circle that is tangent to the curve at one sample and contains another sample
+/// (Gonzalez, Maddocks 1999).
 double curve_thickness(const std::vector<KnotFrame>& curve) {
   double thickness = HUGE_VAL;
   for (const KnotFrame& a : curve) {

@@ -84,9 +84,9 @@ class Collapse {
 };
 
 /// Collapses the cells: removes a cell together with a face of it that no other cell has, until no such pair exists.
-/// Collapses preserve the homotopy type. For a solid in space, no polyhedron is left; if one were, it would be dropped.
-/// Returns the remaining cells as a complex. Each edge and each polygon is subdivided at its witness. Cost: near-linear
-/// in the number of cells.
+/// Collapses preserve the homotopy type. For a solid in space, no polyhedron is left; a remaining polyhedron would be
+/// dropped. Returns the remaining cells as a complex. Each edge and each polygon is subdivided at its witness. Cost:
+/// near-linear in the number of cells.
 /// @throws Cancelled.
 Complex collapse_cells(const ModelCells& cells, const Context& context) {
   Collapse collapse(cells, context);

@@ -84,8 +84,8 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
   }
   if (flat.empty()) return given;
   ShrinkingSurface surface(mesh);
-  // If triangles without area are neighbours, a flip may produce another one, which is queued. Each flip still leaves
-  // one fewer in such a row.
+  // If triangles without area are neighbours, a flip may produce another triangle without area, which is queued. Each
+  // flip still leaves one fewer of them in such a row.
   for (std::size_t turn = 0; turn < flat.size() && turn < 4 * given.size(); ++turn) {
     const std::uint32_t t = flat[turn];
     if (has_area(surface, t)) continue;

@@ -66,7 +66,7 @@ std::string counted(std::size_t n, const char* one, const char* many) {
 /// Result of checking how triangles meet.
 struct Meeting {
   std::string why;      ///< the reason why the mesh bounds no polyhedron; empty if it bounds one
-  std::string problem;  ///< the same reason as a full sentence; also set if bodies touch each other
+  std::string problem;  ///< the reason as a full sentence; also set if bodies touch each other
   std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies that touch
 };
 

@@ -34,7 +34,7 @@ struct MeshSolid {
 };
 
 /// Returns a group number for each body, such that bodies of the same group do not touch each other. If no bodies
-/// touch, all are in group 0.
+/// touch, all bodies are in group 0.
 [[nodiscard]] std::vector<std::uint32_t> groups_apart(std::size_t bodies,
                                                       std::span<const std::array<std::uint32_t, 2>> touching);
 
@@ -51,8 +51,8 @@ struct Facing {
   Topology facts;             ///< topology with `triangles`
 };
 
-/// Reverses triangles that face another way than most triangles of their shell. Cost: that of topology(), or twice as
-/// much if triangles were reversed.
+/// Reverses triangles that face against the majority of their shell. Cost: that of topology(), or twice as much if
+/// triangles were reversed.
 /// @throws Cancelled.
 [[nodiscard]] Facing face_one_way(const MeshView& mesh, const SiteTable& sites, const Context& context);
 

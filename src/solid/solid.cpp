@@ -35,9 +35,9 @@ class PointLocation {
   [[nodiscard]] bool contains(const Vec3d& p) const;
 
  private:
-  /// Returns true if the winding number, counted along a ray from the point, is above 0. Returns true, too, if the
-  /// point lies on the surface of a polyhedron. Returns nullopt if the ray meets an edge, or starts on the surface of a
-  /// mesh that bounds no polyhedron.
+  /// Returns true if the winding number, counted along a ray from the point, is above 0. Also returns true if the point
+  /// lies on the surface of a polyhedron. Returns nullopt if the ray meets an edge, or starts on the surface of a mesh
+  /// that bounds no polyhedron.
   [[nodiscard]] std::optional<bool> contains_along(const Vec3d& p, const Vec3d& direction) const;
 
   bool is_polyhedron_;
@@ -46,7 +46,8 @@ class PointLocation {
   std::optional<WindingNumber> winding_;  ///< set for meshes that are not closed
 };
 
-/// Largest number of rays to try. One is nearly always enough: a ray in a random direction almost never meets an edge.
+/// Largest number of rays to try. One ray is nearly always enough, because a ray in a random direction almost never
+/// meets an edge.
 constexpr std::uint32_t most_rays = 64;
 
 TriangleMesh joined(const std::vector<SolidBody>& bodies) {

@@ -18,7 +18,7 @@
 
 namespace blum {
 
-/// Eight boxes, stored axis by axis. An empty box (+inf, -inf) is infinitely far from every point and box.
+/// Eight boxes, stored axis by axis. An empty box (+inf, -inf) is infinitely far from every point and every box.
 struct alignas(64) BoxBlock {
   double lower[3][lanes];
   double upper[3][lanes];

@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::size_t leaf_grain = 512;
 constexpr std::size_t query_grain = 512;
-/// Candidates whose approximate distance exceeds the best one by at most this are evaluated exactly. Relative to the
-/// lengths involved.
+/// Candidates whose approximate distance exceeds the smallest distance by at most this are evaluated exactly. The value
+/// is relative to the lengths involved.
 constexpr double candidate_slack = 2e-12;
-/// Error of distances that is due to rounding the coordinates of closest points. Relative to the largest coordinate.
+/// Error of distances that is due to rounding the coordinates of closest points, relative to the largest coordinate.
 constexpr double coordinate_slack = 4e-15;
 
 /// A primitive in the form that PrimitiveBlock stores.

@@ -112,9 +112,9 @@ unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
   return static_cast<unsigned>(sum);
 }
 
-/// Returns 1 if all corners of a triangle, except common ones, lie on one side of the other's plane. Then the two
-/// triangles share only their common corners. Returns 0 if this is not certain, by the error bound of orient3d. Uses
-/// sums of flags, because the compiler splits maxima into scalar code.
+/// Returns 1 if all corners of a triangle, except common ones, lie on one side of the other triangle's plane. Then the
+/// two triangles share only their common corners. Returns 0 if rounding (the error bound of orient3d) makes this
+/// uncertain. The function adds flags, because the compiler splits maxima into scalar code.
 inline double is_beside(const TriangleGroup& group, std::size_t i, const GroupTriangle& other) {
   double above = 1;
   double below = 1;

@@ -65,8 +65,8 @@ float most_magnitude(const MovingBoxF& box) {
   return most;
 }
 
-/// Returns a lower bound of the times at which one side of a box passes another one. It is above the other by the given
-/// gaps at the start and at the end, less rounding, and not above it at both.
+/// Returns a lower bound of the times at which one side of a box passes a side of another box. The gaps are the heights
+/// of the first side above the second at the start and at the end, less rounding. At most one gap is positive.
 float passing_time(float start_gap, float end_gap) {
   return start_gap > 0 && end_gap < start_gap ? start_gap / (start_gap - end_gap) : 0;
 }
@@ -82,13 +82,13 @@ double touch_time(const MovingBlock& block, std::size_t lane, const MovingBoxF& 
                      passing_time(box.lower[0][axis] - block.upper[0][axis][lane] - rounding,
                                   box.lower[1][axis] - block.upper[1][axis][lane] - rounding)});
   }
-  // Gaps already allow for rounding; this allows for that of the quotient.
+  // Gaps already allow for rounding; this margin allows for rounding of the quotient.
   constexpr double margin = 1 - 0x1p-20;
   return margin * static_cast<double>(time);
 }
 
-/// Computes lower bounds of the times at which a box touches eight boxes. They are infinite for boxes that it does not
-/// touch.
+/// Computes lower bounds of the times at which a box touches eight boxes. The bounds are infinite for boxes that the
+/// given box does not touch.
 void touch_times(const MovingBlock& block, const MovingBoxF& box, float rounding, double (&out)[lanes]) {
   std::fill_n(out, lanes, std::numeric_limits<double>::infinity());
   for (unsigned bits = touching(block, box); bits != 0; bits &= bits - 1) {

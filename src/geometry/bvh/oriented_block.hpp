@@ -99,8 +99,8 @@ void extent_along_axes(const FlatTriangleBlock& block, Box3& out);
 /// Computes the interval along an axis that contains all corners.
 void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high);
 
-/// Computes lower bounds of the squared distances between eight triangles and another one. Gaps are measured along the
-/// coordinate axes, along both normals, and along the line through both middles.
+/// Computes lower bounds of the squared distances between eight triangles and another triangle. Gaps are measured along
+/// the coordinate axes, along both normals, and along the line through both middles.
 void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]);
 
 /// Computes lower bounds of the squared distances between eight triangles and a box. Gaps are measured along the axes

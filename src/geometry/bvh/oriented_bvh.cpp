@@ -27,7 +27,7 @@ namespace {
 
 using Axes = std::array<Vec3d, 3>;
 
-/// Intervals along three given axes that contain everything added.
+/// Intervals along three given axes that contain all boxes and triangles added.
 class Extent {
  public:
   explicit Extent(const Axes& axes) : axes_(axes) {}
@@ -83,7 +83,7 @@ std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   return {unit, cross(normal, unit)};
 }
 
-/// Returns the smaller of two boxes: an axis-aligned box, and one whose last axis is orthogonal to a plane.
+/// Returns the smaller of two boxes: an axis-aligned box, and a box whose last axis is orthogonal to a plane.
 /// @param normal  normal of the plane, of any length.
 /// @param along   direction in which the contents are longest.
 /// @param add_to  callable: add_to(extent) adds the contents to an Extent.
@@ -102,8 +102,8 @@ OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& al
   return box.half_sum() <= plain.half_sum() ? box : plain;
 }
 
-/// Returns a box around eight triangles. Its last axis is orthogonal to their common plane, or to the closest fit. If
-/// the axis-aligned box is smaller, it is returned instead.
+/// Returns a box around eight triangles. The last axis of the box is orthogonal to the common plane of the triangles,
+/// or to the plane that fits them best. If the axis-aligned box is smaller, it is returned instead.
 /// @param block   receives its triangles' normals.
 /// @param bounds  receives the axis-aligned box.
 OrientedBox box_around(FlatTriangleBlock& block, Box3& bounds) {
@@ -133,8 +133,8 @@ OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds) {
 /// Threads fill separate parts of a tree: one part below each block of this level.
 constexpr std::size_t level_of_parts = 2;
 constexpr std::size_t leaves_per_part = lanes * lanes * lanes;
-/// The distance of a pair may be this much smaller than the distance of their boxes, because of rounding. Relative to
-/// the largest coordinate.
+/// Because of rounding, the distance of a pair may be this much smaller than the distance of their boxes. The value is
+/// relative to the largest coordinate.
 constexpr double rounding = 1e-13;
 
 using NodeRef = OrientedBvh::Node;
@@ -369,7 +369,8 @@ class PairSearch {
     std::size_t steps = std::numeric_limits<std::size_t>::max();
     run(first, steps);
   }
-  /// @param steps  number of steps after which the search ends; reduced by those that were done. See pending().
+  /// @param steps  number of steps after which the search ends; on return, reduced by the number of steps that were
+  ///               done. See pending().
   void run(const NodePair& first, std::size_t& steps) {
     pending_.push_back(first);
     for (; !pending_.empty() && steps > 0; --steps) {
@@ -383,7 +384,7 @@ class PairSearch {
       }
     }
   }
-  /// Pairs that a search which has ended early did not look at.
+  /// Pairs that remain to be compared if a search has ended early.
   [[nodiscard]] std::span<const NodePair> pending() const { return pending_.span(); }
   [[nodiscard]] bool is_over() const { return !(limit_ >= 0); }
 

@@ -17,7 +17,7 @@ namespace blum {
 struct alignas(64) PrimitiveBlock {
   double corner[3][3][lanes];  ///< [corner][axis][lane]
   /// Altitude if the triangle is a sliver, whose plane is inaccurate; else 0. The border of a sliver is at most this
-  /// much further away than the sliver.
+  /// altitude further away than the sliver.
   double sliver_altitude[lanes];
   std::uint32_t vertex[3][lanes];  ///< mesh vertex at each corner
   std::uint32_t edge[3][lanes];    ///< site ids of the edges 01, 12, 02; none if the edge does not exist
@@ -49,13 +49,13 @@ struct SiteCandidate {
 /// lengths involved. For slivers they are lower bounds.
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]);
 
-/// Returns a bit for each triangle of a block that a ray may cross between its origin and t = end. It is 0 for
-/// triangles that the ray's line certainly misses, and for those whose plane the ray certainly does not reach.
+/// Returns a bit for each triangle of a block that a ray may cross between its origin and t = end. The bit is 0 for
+/// triangles that the ray's line certainly misses, and for triangles whose plane the ray certainly does not reach.
 /// @param end  may be infinite.
 [[nodiscard]] unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end);
 
-/// Returns a bit for each triangle of a block that may share a point with a box. It is 0 if the triangle's bounding box
-/// does not touch the box, or the box is certainly on one side of its plane.
+/// Returns a bit for each triangle of a block that may share a point with a box. The bit is 0 if the triangle's
+/// bounding box does not touch the box. It is also 0 if the box is certainly on one side of the triangle's plane.
 [[nodiscard]] unsigned may_reach(const PrimitiveBlock& block, const Box3& box);
 
 /// Triangle that is compared with the triangles of blocks.
@@ -68,12 +68,12 @@ struct ProbeTriangle {
   explicit ProbeTriangle(const std::array<Vec3d, 3>& triangle);
 };
 
-/// Returns a bit for each triangle of a block that may share a point with another triangle. It is 0 if their bounding
-/// boxes do not touch, or if one certainly lies on one side of the other's plane.
+/// Returns a bit for each triangle of a block that may share a point with another triangle. The bit is 0 if the
+/// bounding boxes do not touch, or if one triangle certainly lies on one side of the other triangle's plane.
 [[nodiscard]] unsigned may_meet(const PrimitiveBlock& block, const ProbeTriangle& other);
 
-/// Replaces `best` by the closest site of one primitive if it is closer. Its distance is accurate to rounding of the
-/// lengths involved, for triangles of every shape.
+/// Replaces `best` by the closest site of one primitive if that site is closer. The distance is accurate to rounding of
+/// the lengths involved, for triangles of every shape.
 void offer_closest(const PrimitiveBlock& block, std::size_t lane, const Vec3d& query, SiteCandidate& best);
 
 }  // namespace blum

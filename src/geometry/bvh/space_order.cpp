@@ -82,7 +82,7 @@ std::uint64_t key_beside(const Entry* begin, const Entry* end, double part, bool
   return sample[static_cast<std::size_t>(std::clamp(rank, 0.0, samples - 1))];
 }
 
-/// Equivalent of std::nth_element. It mostly needs one and a half passes, with predictable branches.
+/// Equivalent of std::nth_element. This function usually needs one and a half passes, with predictable branches.
 void select(Entry* begin, Entry* nth, Entry* end, const KeyAlong& key) {
   constexpr std::ptrdiff_t few = 48;
   for (int round = 0; round < 8 && end - begin > few; ++round) {

@@ -39,18 +39,18 @@ struct GroupTriangle {
   [[nodiscard]] detail::ContactTriangle for_contact() const;
 };
 
-/// Returns true if all corners of `triangle` that `other` lacks certainly lie on one side of the other's plane. The two
-/// triangles then share only common corners. Returns false if rounding makes this uncertain.
+/// Returns true if all corners of `triangle` that `other` lacks certainly lie on one side of the plane of `other`. The
+/// two triangles then share only common corners. Returns false if rounding makes this uncertain.
 [[nodiscard]] bool is_beside(const GroupTriangle& triangle, const GroupTriangle& other);
 
-/// Does the same test with another plane. It contains an edge of `other` and is parallel to the coordinate axis closest
-/// to the normal of `other`. The corners must be on the side opposite to the third corner of `other`. This separates
-/// coplanar triangles.
+/// Does the test of is_beside() with another plane. This plane contains an edge of `other`, and is parallel to the
+/// coordinate axis closest to the normal of `other`. The corners must be on the side opposite to the third corner of
+/// `other`. Such planes separate coplanar triangles.
 [[nodiscard]] bool is_beyond_an_edge(const GroupTriangle& triangle, const GroupTriangle& other);
 
-/// Returns a bit for each triangle of a group that may share more than corners with `triangle`. It is 0 if their
-/// bounding boxes do not touch. It is also 0 if the triangle, except for common corners, certainly lies on one side of
-/// the plane of `triangle`.
+/// Returns a bit for each triangle of a group that may share more than corners with `triangle`. The bit is 0 if the
+/// bounding boxes do not touch. It is also 0 if the group's triangle, except for common corners, certainly lies on one
+/// side of the plane of `triangle`.
 [[nodiscard]] unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle);
 
 }  // namespace blum

@@ -28,8 +28,8 @@ struct Cut {
 /// integers. They are also stored rounded to the nearest double, which decides nearly all predicates.
 class ExactSpace {
  public:
-  /// @param vertices  coordinates of magnitude at most 2. They must outlive this object. At the same position at most
-  /// one vertex may be used.
+  /// @param vertices  coordinates of magnitude at most 2. The coordinates must outlive this object. Used vertices must
+  /// have different positions.
   /// @param used      vertices from which points are constructed.
   /// @throws std::range_error if a coordinate of a used vertex has more than `most_bits` fractional bits.
   ExactSpace(std::span<const Vec3d> vertices, std::span<const PointId> used);

@@ -95,8 +95,8 @@ void PlanarMesh::split_edge(Index triangle, std::size_t k, Index p) {
   triangles_.resize(triangles_.size() + (other == none ? 1 : 2));
   const std::size_t k1 = (k + 1) % 3;
   const std::size_t k2 = (k + 2) % 3;
-  // Splits the edge from u to v at p. w is the corner to its left, x the one to its right. The results are u p w, p v
-  // w, v p x, p u x.
+  // Splits the edge from u to v at p. w is the corner to the left of the edge, x the corner to its right. The results
+  // are u p w, p v w, v p x, p u x.
   set(triangle, {{a.at[k], p, a.at[k2]}, {second, first, a.beyond[k2]}, {a.stays[k], false, a.stays[k2]}});
   set(first, {{p, a.at[k1], a.at[k2]}, {other, a.beyond[k1], triangle}, {a.stays[k], a.stays[k1], false}});
   replace(a.beyond[k1], triangle, first);
@@ -193,8 +193,8 @@ std::optional<std::deque<std::array<PlanarMesh::Index, 2>>> PlanarMesh::crossed_
     if (tip == to) return out;
     const int side = turn(from, to, tip);
     if (side == 0) return std::nullopt;
-    // Crossed edges are directed from the right of the segment to its left. In the triangle `other` this edge has the
-    // opposite direction.
+    // Crossed edges are directed from the right of the segment to its left. In the triangle `other`, the crossed edge
+    // has the opposite direction.
     next = {other, side > 0 ? (j + 1) % 3 : (j + 2) % 3};
   }
   return std::nullopt;

@@ -19,7 +19,7 @@ namespace blum::detail {
 /// that cross them (Sloan 1993).
 class PlanarMesh {
  public:
-  /// @param outer  three points whose triangle contains all others.
+  /// @param outer  three points whose triangle contains all other points.
   PlanarMesh(const ExactSpace& space, std::size_t axis, const std::array<PointId, 3>& outer);
 
   /// Inserts a point.
@@ -27,7 +27,7 @@ class PlanarMesh {
   [[nodiscard]] bool insert(PointId point);
   /// Makes a segment a fixed edge. No point may lie on it, and no fixed edge may cross it. Its ends must have been
   /// inserted.
-  /// @return  false if a point lies on it or a fixed edge crosses it.
+  /// @return  false if a point lies on the segment, or a fixed edge crosses it.
   [[nodiscard]] bool insert_segment(PointId from_point, PointId to_point);
   /// Flips edges to enlarge the smallest angles, as far as rounding allows.
   void improve();

@@ -30,7 +30,7 @@
 namespace blum::detail {
 namespace {
 
-/// Mesh of the kept facets: those with at least a given winding number behind them and less in front.
+/// Mesh of the kept facets: facets with at least a given winding number behind them, and a smaller number in front.
 struct Boundary {
   std::vector<Triangle> triangles;  ///< Corners are indices into `points`.
   /// Position of each point, as an edge: its two ends if the point is the middle of an edge that had to be cut. For
@@ -41,8 +41,8 @@ struct Boundary {
 };
 
 constexpr std::uint32_t nobody = 0xffffffffU;
-/// Thousands of times the error in the position of a crossing, for a mesh of size 1. The ray must not be nearly
-/// parallel to the triangle.
+/// Thousands of times the error in the position of a crossing, for a mesh of size 1. This requires that the ray is not
+/// nearly parallel to the triangle.
 constexpr double margin = 1e-12;
 
 /// Side of a facet along an edge.
@@ -147,8 +147,8 @@ class Windings {
 
   [[nodiscard]] std::uint32_t patch(const Side& side) { return patches_.find(side.facet()); }
 
-  /// Finds the winding number in front of every patch. In each connected part, a ray determines that of one patch. The
-  /// others follow from the order of facets around edges.
+  /// Finds the winding number in front of every patch. In each connected part, a ray determines the number of one
+  /// patch. The numbers of the other patches follow from the order of facets around edges.
   void spread() {
     // For each patch: its edges with more than two facets.
     std::vector<std::vector<std::uint32_t>> edges_of(facets_.size());
@@ -181,7 +181,8 @@ class Windings {
     const auto [first, count] = crowded_[edge];
     std::size_t start = 0;
     while (patch(sides_[first + start]) != from) ++start;
-    // A rising facet faces the next facet, and its back the previous one. For a falling facet it is the reverse.
+    // The front of a rising facet is towards the next facet, and its back towards the previous facet. A falling facet
+    // has its front towards the previous facet.
     const Side& known = sides_[first + start];
     std::int64_t winding = *front_[from] + (known.rises ? 0 : facets_[known.facet()].times);
     for (std::size_t k = 1; k <= count; ++k) {
@@ -300,8 +301,8 @@ class Windings {
     return front < least_ && front + facets_[f].times >= least_;
   }
 
-  /// Two facets at an edge that are neighbours around the solid. The first one falls (traverses the edge towards its
-  /// lower end), the second one rises.
+  /// Two facets at an edge that are neighbours around the solid. The first facet falls (traverses the edge towards its
+  /// lower end), the second facet rises.
   using Neighbours = std::array<Side, 2>;
 
   /// Returns pairs of neighbours among the kept facets at an edge.
@@ -360,8 +361,8 @@ class Windings {
     return out;
   }
 
-  /// Handles parts that touch along an edge and share the vertices at both of its ends. Each gets a separate vertex at
-  /// the edge's middle.
+  /// Handles parts that touch along an edge and share the vertices at both of its ends. Each part gets a separate
+  /// vertex at the edge's middle.
   void cut_where_ends_are_shared(const std::vector<Neighbours>& edge, const std::vector<std::uint32_t>& name,
                                  Boundary& out) {
     const auto ends = [&](const Neighbours& pair) {

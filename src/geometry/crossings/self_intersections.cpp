@@ -23,16 +23,16 @@
 namespace blum {
 namespace {
 
-/// Smallest number of groups processed between two checks of the number of pairs found. It is small, so that a search
-/// with very many pairs stops soon.
+/// Smallest number of groups processed between two checks of the number of pairs found. The number is small, so that a
+/// search with very many pairs stops soon.
 constexpr std::size_t smallest_batch = 512;
-/// Largest number of groups between two checks. It is used if few pairs are found, so that threads rarely wait for each
-/// other.
+/// Largest number of groups between two checks. Such large batches are used if few pairs are found, so that threads
+/// rarely wait for each other.
 constexpr std::size_t largest_batch = 4096;
 constexpr std::size_t grain = 8;
 constexpr std::size_t build_grain = 64;
 
-/// Groups are rebuilt when their looseness exceeds the original one by this factor.
+/// Groups are rebuilt when their looseness exceeds their original looseness by this factor.
 constexpr double most_loosening = 1.25;
 
 double extent(const Box3& box) {

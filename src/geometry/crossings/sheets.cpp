@@ -96,8 +96,8 @@ constexpr std::uint32_t nobody = 0xffffffffU;
 /// Largest number of pairs of segments that are tested, for all sheets together.
 constexpr std::size_t most_looks = 400'000'000;
 
-/// Segment in the plane of a sheet. It is an edge of a triangle of the sheet, or the intersection of one with a
-/// triangle that is not in the plane.
+/// Segment in the plane of a sheet. The segment is an edge of a triangle of the sheet. Otherwise, it is the
+/// intersection of such a triangle with a triangle outside of the plane.
 struct SheetSegment {
   std::array<PointId, 2> ends{};
   Cut cut;
@@ -367,8 +367,8 @@ class Cutter {
   }
 
   /// Returns triangles between the points of a sheet, counter-clockwise seen against its axis. If the sheet has one
-  /// triangle, they fill it exactly, because no point lies outside. If it has several, they may also fill gaps between
-  /// these.
+  /// triangle, the result fills it exactly, because no point lies outside. If the sheet has several triangles, the
+  /// result may also fill gaps between them.
   std::vector<std::array<PointId, 3>> triangulated(const Sheet& sheet) {
     if (sheet.points.size() == 3 && sheet.members.size() == 1) {
       std::array<PointId, 3> corners = sheet.first.corners;

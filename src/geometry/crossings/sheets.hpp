@@ -54,8 +54,8 @@ struct Contact3 {
   std::array<PointId, 2> points{};
 };
 
-/// Returns the common points of two triangles. Adds those that lie on an edge of either triangle, without its ends, to
-/// `edge_points`.
+/// Returns the common points of two triangles. Adds to `edge_points` the common points that lie on an edge of either
+/// triangle, without its ends.
 [[nodiscard]] Contact3 contact_of(ExactSpace& space, const FlatTriangle& a, const FlatTriangle& b,
                                   EdgePoints& edge_points);
 
@@ -68,7 +68,8 @@ class Unresolved : public std::runtime_error {
 /// Part of an input triangle, or a whole input triangle.
 struct Facet {
   std::array<PointId, 3> corners{};
-  /// Multiplicity, > 0: triangles of the input here with this direction, minus those with the opposite one.
+  /// Multiplicity, > 0: number of input triangles here with this direction, minus the number with the opposite
+  /// direction.
   std::int32_t times = 1;
   std::uint32_t source = 0;  ///< input triangle that contains it and faces the same way
   std::uint32_t sheet = 0;   ///< facets with equal numbers lie in one plane and were cut together
@@ -92,8 +93,8 @@ struct CutMesh {
 };
 
 /// Cuts the triangles that cross or touch others. In the result, two facets share only vertices and edges of both.
-/// Triangles that overlap in a plane become one set of facets. Other triangles are not cut, and flat ones are removed.
-/// The mesh must outlive the result.
+/// Triangles that overlap in a plane become one set of facets. Other triangles are not cut, and triangles without area
+/// are removed. The mesh must outlive the result.
 /// @throws Unresolved, Cancelled.
 [[nodiscard]] CutMesh cut_triangles(const CrossedMesh& mesh, const Context& context);
 

@@ -59,15 +59,15 @@ bool on_both_sides(const Signs& s) {
   return (s[0] > 0 || s[1] > 0 || s[2] > 0) && (s[0] < 0 || s[1] < 0 || s[2] < 0);
 }
 
-/// Returns the contact of the triangles p, q, a and p, q, b with the common edge from p to q. They overlap only if one
-/// is folded onto the other.
+/// Returns the contact of the triangles p, q, a and p, q, b with the common edge from p to q. The triangles overlap
+/// only if one is folded onto the other.
 Contact contact_over_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b) {
   if (orient3d(p, q, a, b) != 0) return Contact::none;
   const Projection plane({p, q, a});
   return plane.turn(p, q, a) == plane.turn(p, q, b) ? Contact::touching : Contact::none;
 }
 
-/// Returns the contact along a ray: the one in which the wedge of `a` passes through the plane of `b`. The ray starts
+/// Returns the contact along a ray: the ray in which the wedge of `a` passes through the plane of `b`. The ray starts
 /// at the common corner a[0] = b[0].
 /// @param side  sides of b's plane on which a[1] and a[2] lie. They must differ.
 Contact contact_along_ray(const Points& a, const Points& b, int side_1, int side_2) {
@@ -84,7 +84,7 @@ Contact contact_along_ray(const Points& a, const Points& b, int side_1, int side
 }
 
 /// Returns the contact of triangles with the common corner a[0] = b[0]. Near the corner both are wedges. Triangles are
-/// convex, so they share more than the corner only if the wedges do.
+/// convex, so they share more than the corner only if the wedges share more than the corner.
 Contact contact_over_corner(const Points& a, const Points& b) {
   const int b1 = orient3d(a[0], a[1], a[2], b[1]);
   const int b2 = orient3d(a[0], a[1], a[2], b[2]);

@@ -59,7 +59,8 @@ struct SiteProjection::Data {
   [[nodiscard]] std::size_t first_face() const { return positions.size() + edges.size(); }
   /// Loads data of a site into the cache.
   void prefetch(SiteId site) const;
-  /// Loads the positions of an edge or vertex into the cache. Its data should be there.
+  /// Loads the positions of an edge or vertex into the cache. The data of the edge or vertex should already be in the
+  /// cache.
   void prefetch_positions(SiteId site) const;
 };
 

@@ -156,7 +156,7 @@ struct Pair {
 
 /// Offers the closest pairs of a corner of one triangle and a point on an edge of the other.
 void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
-  // All distances are computed before they are compared, so that no computation waits for the one before.
+  // All distances are computed before they are compared, so that no computation waits for the previous one.
   std::array<double, 9> squares;
   std::array<double, 9> places;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -263,8 +263,8 @@ void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
   }
 }
 
-/// Returns the closest pair of points, except for crossings: it compares borders with borders, and corners with
-/// insides. If the triangles do not cross, this is their closest pair.
+/// Returns the closest pair among points of both borders, and among corners of one triangle and inner points of the
+/// other. If the triangles do not cross, this pair is the closest pair of points.
 Pair closest(const Points& a, const Points& b) {
   const Sides of_a(a);
   const Sides of_b(b);

@@ -197,7 +197,7 @@ class PatchGrower {
   [[nodiscard]] const std::vector<std::uint32_t>& part_of() const { return part_of_; }
   [[nodiscard]] const std::vector<ShapeModel>& models() const { return models_; }
 
-  /// Returns the shape that fits connected faces best, near a known one.
+  /// Returns the shape that fits connected faces best, with the search starting from a known shape.
   [[nodiscard]] ShapeModel settled(const ShapeModel& near, std::span<const std::uint32_t> faces) {
     const std::vector<Vec3d> points = points_of(faces);
     const std::optional<ShapeModel> found = points.size() < 3 ? std::nullopt : refit_shape(near, points, tolerance_, 0);
@@ -290,7 +290,7 @@ class PatchGrower {
     part.deviation = std::sqrt(sum / count);
   }
 
-  /// Fits a shape to faces. Returns nullopt if a face is not near it.
+  /// Fits a shape to faces. Returns nullopt if a face is not near the shape.
   std::optional<Part> fitted(SurfaceKind kind, const std::vector<std::uint32_t>& faces) {
     const std::vector<Vec3d> points = points_of(faces);
     const std::size_t least = static_cast<std::size_t>(parameters_of(kind)) + (kind == SurfaceKind::plane ? 0 : 2);
@@ -329,7 +329,7 @@ class PatchGrower {
       if (is_done && (count == fitted_at || ++ends > most_ends)) break;
       if (!is_done && count < 2 * fitted_at && count > 64) continue;
       fitted_at = count;
-      if (refit(part)) begin = 0;  // the new shape may fit neighbours that the old one did not
+      if (refit(part)) begin = 0;  // the new shape may fit neighbours that the old shape did not fit
     }
     part.vertices = points_of(part.faces).size();
     measure(part);
@@ -350,7 +350,7 @@ class PatchGrower {
     return true;
   }
 
-  /// Returns the faces around a face, up to a number of steps. Returns less if there are too many.
+  /// Returns the faces around a face, up to a number of steps. Returns the faces of fewer steps if there are too many.
   [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t seed, int steps) {
     ++face_stamp_;
     face_mark_[seed] = face_stamp_;
@@ -388,7 +388,7 @@ class PatchGrower {
     return out;
   }
   /// Returns a chain of needles with common long edges, three on either side of a face. They form strips of a cylinder
-  /// or cone. Returns no face if others are not needles.
+  /// or cone. Returns an empty list if the other faces are not needles.
   [[nodiscard]] std::vector<std::uint32_t> chain(std::uint32_t seed) {
     ++face_stamp_;
     face_mark_[seed] = face_stamp_;
@@ -526,8 +526,8 @@ class PatchGrower {
     }
   }
 
-  /// Joins neighbouring parts if the shape of the larger one fits all faces of the other one. Returns true if there are
-  /// such parts.
+  /// Joins two neighbouring parts if the shape of the larger part fits all faces of the smaller part. Returns true if
+  /// parts were joined.
   bool merge_parts() {
     std::vector<std::vector<std::uint32_t>> faces = faces_of_parts();
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;

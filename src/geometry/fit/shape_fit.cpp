@@ -233,7 +233,7 @@ void add_apex(const ShapeModel& model, const std::array<Vec3d, 2>& plane, const 
   equations.add({0, 0, 0, 0, -c, model.radius * s - t * c}, model.radius * c + t * s);
 }
 
-/// One row of the linear problem: how the distance of a point depends on the parameters.
+/// One row of the linear problem: derivatives of the distance of a point by the parameters.
 Row row_of(const ShapeModel& model, const std::array<Vec3d, 2>& plane, const Vec3d& p) {
   const Vec3d way = p - model.point;
   if (model.kind == SurfaceKind::sphere) {
@@ -262,7 +262,7 @@ void move(ShapeModel& model, const std::array<Vec3d, 2>& plane, const Row& step)
   if (model.kind == SurfaceKind::cone) model.slope += step[5];
 }
 
-/// Moves the point of an axis beside another point.
+/// Moves a shape's point along the axis to the point closest to `beside`.
 void slide(ShapeModel& model, const Vec3d& beside) {
   if (model.kind != SurfaceKind::cylinder && model.kind != SurfaceKind::cone) return;
   const double t = dot(beside - model.point, model.axis);
@@ -319,7 +319,7 @@ std::optional<ShapeModel> refit_shape(const ShapeModel& near, std::span<const Ve
       const Row row = row_of(out, plane, p);
       if (std::isfinite(row[0])) equations.add(row, -distance);
     }
-    // Steps that converge square the error. Steps to a bad fit do not reduce it for long.
+    // Converging steps square the error. Steps towards a bad fit soon stop reducing the error.
     if (k > 1 && farthest > 10 * tolerance && (farthest > 0.5 * before || k > steps_to_converge)) return std::nullopt;
     before = farthest;
     const std::optional<Row> step = equations.solve();

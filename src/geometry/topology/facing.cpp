@@ -46,7 +46,7 @@ class Reverser {
     return std::move(triangles_);
   }
 
-  /// Leaves the triangles of patches that cannot be oriented as they are.
+  /// If a patch cannot be oriented, its triangles stay as they are.
   std::vector<Triangle> agreeing_patches() {
     for (std::uint32_t first = 0; first < facing_.size(); ++first) {
       if (facing_[first] == 0 && !names_vertex_twice(mesh_.triangles[first])) (void)agree_with(first);

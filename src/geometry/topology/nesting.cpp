@@ -22,8 +22,8 @@ namespace {
 
 /// Number of points tested for a shell that touches others. The aim is a point that lies on no other shell.
 constexpr std::size_t most_probes_per_shell = 8192;
-/// If all tested points of a shell lie on other shells, this many points slightly inside it are tested. `inner_depth`
-/// is their depth relative to the size of a triangle.
+/// If all tested points of a shell lie on other shells, this many points slightly inside the shell are tested.
+/// `inner_depth` is their depth relative to the size of a triangle.
 constexpr std::size_t most_inner_points = 64;
 constexpr double inner_depth = 1e-7;
 /// A round of tests ends after this many comparisons of a triangle with a point, plus 16 for each triangle and each
@@ -47,7 +47,7 @@ struct Query {
 constexpr std::uint32_t no_shell = no_component;
 constexpr std::uint32_t several_shells = no_component - 1;
 
-/// Adds a shell to a set that only distinguishes none, one (which) and several.
+/// Adds a shell to a set. The set only distinguishes three states: no shell, one known shell, or several shells.
 void include_shell(std::uint32_t shell, std::uint32_t& set) {
   set = set == no_shell || set == shell ? shell : several_shells;
 }
@@ -210,8 +210,8 @@ struct Height {
   bool is_certain = true;
 };
 
-/// Finds out if a triangle is above a point, and if this is certain for all points within the rounding. The triangle's
-/// projection must have winding number 1 (counter-clockwise) or -1 around the point.
+/// Finds out if a triangle is above a point, and if the result is certain for all points within the rounding. The
+/// triangle's projection must have winding number 1 (counter-clockwise) or -1 around the point.
 Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding, int winding) {
   const Vec3d a = corners[0] - p;
   const Vec3d b = corners[1] - p;
@@ -306,9 +306,9 @@ class Nesting {
     return queries;
   }
 
-  /// Returns points slightly inside the given shells, below the middles of some triangles. They are for shells whose
-  /// tested points all lie on other shells. Their depth is large compared with rounding, and small compared with
-  /// features.
+  /// Returns points slightly inside the given shells, below the middles of some triangles. These points are for shells
+  /// whose tested points all lie on other shells. The depth of the points is large compared with rounding, and small
+  /// compared with features.
   [[nodiscard]] std::vector<Query> inner_points(const std::vector<std::uint32_t>& shells) const {
     std::vector<Query> queries;
     for_each_of_many(shells, most_inner_points, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
@@ -439,7 +439,7 @@ class Nesting {
   }
 
   /// For each shell, finds the shells that surround all of its tested points that lie on no other shell. A container of
-  /// the shell surrounds all points inside it. A shell inside it does not.
+  /// the shell surrounds all points inside the shell. A shell inside it does not.
   void choose_common(std::size_t round) {
     Answers& answers = rounds_[round];
     std::vector<std::vector<std::uint32_t>> places(set_.shells.size());
@@ -510,8 +510,8 @@ class Nesting {
     }
   }
 
-  /// Sets the parent of each shell: the deepest shell around it. If several are equally deep, it is the one with the
-  /// smallest index.
+  /// Sets the parent of each shell: the deepest shell around it. If several shells are equally deep, the parent is the
+  /// shell with the smallest index.
   void set_parents() {
     std::vector<std::uint32_t> order;
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {

@@ -23,12 +23,12 @@ struct ShellSet {
 /// the triangles above one of its vertices that belong to shells around that vertex.
 [[nodiscard]] ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, const Context& context);
 
-/// Sets the depth and parent of each shell. They follow from the winding numbers of the other shells around one of its
-/// points. These are computed from the triangles that a ray from the point crosses. The point is a vertex that lies on
-/// no other shell, or else the middle of a triangle that lies on no other shell. If all vertices and middles lie on
-/// other shells, many points slightly inside the shell are used. The shell then lies in those shells that surround all
-/// of these points. If shells coincide so often that a bounded number of comparisons finds no such point, a vertex that
-/// lies on other shells decides.
+/// Sets the depth and parent of each shell. Depth and parent follow from the winding numbers of the other shells around
+/// one point of the shell. A ray from the point crosses triangles, from which the winding numbers are computed. The
+/// point is a vertex that lies on no other shell, or else the middle of a triangle that lies on no other shell. If all
+/// vertices and middles lie on other shells, many points slightly inside the shell are used. The shell then lies in
+/// those shells that surround all of these points. If shells coincide so often that a bounded number of comparisons
+/// finds no such point, a vertex that lies on other shells decides.
 /// @param set  must have signed volumes; their signs determine the inner side of each shell.
 /// @return  number of comparisons of a triangle with a point.
 std::size_t nest_shells(const MeshView& mesh, ShellSet& set, const Context& context);

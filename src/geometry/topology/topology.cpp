@@ -115,8 +115,8 @@ class Fans {
   UnionFind sets_;
 };
 
-/// Counts triangles that have the same vertices as an earlier one. Such triangles share all three edges. So copies are
-/// searched, for each edge, only among the triangles whose smallest edge it is.
+/// Counts triangles that have the same vertices as an earlier triangle. Such triangles share all three edges. So, for
+/// each edge, copies are only searched among the triangles that have this edge as their smallest edge.
 std::size_t count_duplicates(const MeshView& mesh, const SiteTable& sites, const EdgeUses& edges) {
   std::size_t duplicates = 0;
   std::vector<std::uint32_t> opposite;

@@ -48,8 +48,8 @@ double distance(const Vec3d& a, const Vec3d& b) {
 ///
 /// Along each axis, the grid's slabs start at coordinates of vertices. So slabs stay accurate far from the origin,
 /// where quotients of coordinate and width could not distinguish neighbours. Coordinates two slabs apart differ by more
-/// than one width, and those three slabs apart by more than two. Vertices within the tolerance are thus at most two
-/// slabs apart along each axis.
+/// than one width, and coordinates three slabs apart by more than two widths. Vertices within the tolerance are thus at
+/// most two slabs apart along each axis.
 class CloseVertices {
  public:
   CloseVertices(std::span<const Vec3d> vertices, double tolerance, std::span<std::uint32_t> cluster)
@@ -182,8 +182,8 @@ class CloseVertices {
 };
 
 /// Joins clusters that contain vertices at a distance of at most `tolerance`.
-/// @param cluster  in: for each vertex, the smallest vertex at exactly its position. Out: the smallest vertex of its
-/// cluster.
+/// @param cluster  on input, for each vertex, the smallest vertex at exactly its position. On output, the smallest
+/// vertex of its cluster.
 void join_close_vertices(std::span<const Vec3d> vertices, double tolerance, std::span<std::uint32_t> cluster) {
   CloseVertices(vertices, tolerance, cluster).run();
   // One pass is enough: the root of a set is its smallest member, and parents are smaller than their children.

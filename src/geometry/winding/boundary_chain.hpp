@@ -15,8 +15,8 @@
 namespace blum {
 
 /// Boundary chain of a surface: the sum of the directed edges of all triangles, with multiplicities. It is empty for a
-/// closed surface. For an open one it consists of the rims of holes. Edges are combined if their ends have the same
-/// positions.
+/// closed surface. For an open surface, it consists of the rims of holes. Edges are combined if their ends have the
+/// same positions.
 ///
 /// If no triangle lies between two points, their winding numbers differ only by the solid angles of this chain. The
 /// winding number's gradient is the chain's Biot-Savart field over 4 pi. The field is the sum of dl x R / R^3, with R
@@ -39,7 +39,7 @@ class BoundaryChain {
   [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
   static constexpr std::int64_t most_edges = 2048;
   /// Returns a bound on |grad w| over a box, with w the winding number, in scaled coordinates. If the bound exceeds
-  /// `enough`, it may return any number above `enough`. Allocates nothing.
+  /// `enough`, the function may return any number above `enough`. Allocates nothing.
   [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
  private:

@@ -89,10 +89,10 @@ constexpr double rounding = 1e-11;
 constexpr double rounding_nearby = 4e-15;
 /// If a query is further away than this many sizes of the mesh, its winding number counts as 0 (it is below 1e-60).
 constexpr double far_away = 1e30;
-/// is_inside() first accepts clusters whose error, as a winding number, is at most this. If that does not decide, it
-/// accepts only smaller errors.
+/// is_inside() first accepts clusters whose error, as a winding number, is at most this. If this tolerance does not
+/// decide, is_inside() accepts only smaller errors.
 constexpr double first_tolerance = 1.5e-2;
-/// Returns the next smaller tolerance. Queries that the first tolerance does not decide mostly need only a little more
+/// Returns the next smaller tolerance. Most queries that the first tolerance does not decide need only a little more
 /// accuracy.
 constexpr double lower(double tolerance) {
   return tolerance * (tolerance > 1e-3 ? 1.0 / 8 : 1.0 / 64);
@@ -171,7 +171,7 @@ struct WindingNumber::Data {
   }
 
   /// Returns an estimate of the winding number with a bound on its error.
-  /// @param tolerance  error allowed per cluster, as a winding number.
+  /// @param tolerance  error allowed for each cluster, in units of winding numbers.
   [[nodiscard]] Estimate bounded(const Vec3d& scaled_query, double tolerance) const {
     Estimate out = walk(tree, scaled_query, [&](const MultipoleBlock& block, FarSum& far, OpenLanes& others) {
       add_clusters(block, scaled_query, tolerance * full_angle, far, others);

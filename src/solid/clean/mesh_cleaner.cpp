@@ -229,18 +229,18 @@ constexpr std::size_t targets_of_many = 12;
 constexpr double negligible = 0.002;
 /// Cost of the worst possible shape of new triangles. A deviation of the whole tolerance costs 1.
 constexpr double cost_of_shape = 0.1;
-/// The lowest new triangle must have at least this fraction of the height of the lowest old one. If a new triangle is a
-/// needle, the fraction is 1.
+/// The lowest new triangle must have at least this fraction of the height of the lowest old triangle. If a new triangle
+/// is a needle, the fraction is 1.
 constexpr double flattening = 0.25;
 /// A triangle is a needle if its height is below the tolerance, and its longest side exceeds this multiple of the
 /// height.
 constexpr double slenderness = 10;
 /// Cosine of the largest angle by which the normal of a triangle may turn. Needles may turn by any angle, but must not
-/// fold onto their neighbours. The second constant is their limit, measured to the neighbour's normal.
+/// fold onto their neighbours. The second constant is the limit for needles, measured from the neighbour's normal.
 constexpr double least_cosine = 0.2;
 constexpr double least_cosine_of_needle = -0.5;
-/// An edge is flipped only if this multiplies the height of the lower triangle by at least this factor. So flipping
-/// ends.
+/// An edge is flipped only if the flip multiplies the height of the lower triangle by at least this factor. So the
+/// sequence of flips ends.
 constexpr double least_gain = 1.5;
 /// Extra cost of flips, so that collapses with the same deviation come first.
 constexpr double cost_of_flip = 0.1;

@@ -106,9 +106,9 @@ class StepCheck {
 };
 
 /// Returns an upper bound on the Hausdorff distance of two fans of triangles over the same polygon, including rounding.
-/// One fan joins `apex` to the sides of the polygon, the other joins the first corner to them. Returns infinity if it
-/// is not certain that both fans are graphs of functions over the same plane. Method: docs/theory/solid.md. Cost:
-/// quadratic in the number of corners if it is at most 40; otherwise linear.
+/// One fan joins `apex` to the sides of the polygon, the other fan joins the first corner to these sides. Returns
+/// infinity if it is not certain that both fans are graphs of functions over the same plane. Method:
+/// docs/theory/solid.md. Cost: quadratic in the number of corners if it is at most 40; otherwise linear.
 ///
 /// @param ring    two or more corners of the polygon in order, relative to a nearby point.
 /// @param closed  true if the apex lies inside the polygon. Otherwise it lies on the side from the last corner to the
@@ -116,15 +116,15 @@ class StepCheck {
 /// @param enough  the quick bound is returned if it is at most this.
 [[nodiscard]] double fan_gap(std::span<const Vec3d> ring, const Vec3d& apex, bool closed, double enough);
 
-/// A way to remove a vertex: moving it onto a neighbour.
+/// Step that removes a vertex by moving it onto a neighbour.
 struct VertexCollapse {
-  double cost = 0;       ///< ways of lower cost are tried first
+  double cost = 0;       ///< collapses of lower cost are tried first
   double deviation = 0;  ///< bound on the distances between the new triangles and the input mesh, in both directions
   std::uint32_t target = 0;
   std::size_t onto = 0;  ///< the target's index in the ring
 };
 
-/// A way to remove a flat triangle: a flip of its longest side.
+/// Step that removes a flat triangle by a flip of its longest side.
 struct EdgeFlip {
   EdgePair edge;
   double cost = 0;
@@ -144,7 +144,7 @@ class CollapseSearch {
   [[nodiscard]] std::span<const VertexCollapse> find(std::uint32_t v);
   [[nodiscard]] const Star& star() const { return star_; }
 
-  /// Returns the flip of a triangle's longest side. It is possible under the same conditions.
+  /// Returns the flip of a triangle's longest side. The flip is possible under the conditions of find().
   [[nodiscard]] EdgeFlip find_flip(std::uint32_t t) const;
 
  private:

@@ -41,7 +41,7 @@ class SplitTree {
   std::vector<Node> nodes_;
 };
 
-/// A box: a part of a cube of a grid, or the whole cube.
+/// A box: a part of a cube of a grid, or a whole cube.
 struct BoxCell {
   Vec3d low;
   Vec3d high;
@@ -65,7 +65,7 @@ struct BoxRef {
   [[nodiscard]] friend auto operator<=>(const BoxRef&, const BoxRef&) = default;
 };
 
-/// An edge of the decomposition: a part of edges of boxes along which the boxes around it are the same.
+/// An edge of the decomposition: a segment of the boxes' edges along which the surrounding boxes stay the same.
 struct BoxSegment {
   std::size_t axis = 0;
   std::array<std::uint32_t, 2> ends{0, 0};  ///< indices of corners, the lower end first

@@ -299,7 +299,7 @@ BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, ModelObsta
     }
   }
   // If the vertices in the box are close together, the cut goes through their middle. Repeated halving of the box would
-  // take longer. A cut never aims at a single vertex, because the surface looks the same at all scales there.
+  // take longer. A cut never aims at a single vertex, because near a vertex the surface looks the same at all scales.
   const Vec3d size = box.box.high - box.box.low;
   const Vec3d inner = high - low;
   const std::size_t inner_axis = longest(inner);

@@ -19,9 +19,9 @@ namespace blum::detail {
 
 /// Returns true if the bounding box of a triangle meets a box. Both boxes are closed.
 [[nodiscard]] bool may_meet(const TriangleCorners& triangle, const Vec3d& low, const Vec3d& high);
-/// Returns false if may_meet() does, or if a plane certainly separates the triangle from the box. Planes of the
-/// triangle, and planes along one of its edges and an axis, are tested. This helps for slanted needles, which are far
-/// smaller than their bounding boxes.
+/// Returns false if may_meet() returns false, or if a plane certainly separates the triangle from the box. Planes of
+/// the triangle, and planes along one of its edges and an axis, are tested. These planes exclude slanted needles, which
+/// are far smaller than their bounding boxes.
 [[nodiscard]] bool may_reach(const TriangleCorners& t, const Vec3d& low, const Vec3d& high);
 
 /// Returns true if a triangle crosses the segment along an axis between two points. The test is exact.

@@ -81,7 +81,7 @@ class TracedEdges {
   /// Returns true if an edge passes the next plane across axis `one` before the next plane across axis `other`.
   [[nodiscard]] bool is_first(const EdgeEnds& ends, std::size_t one, std::size_t other, const Place& at,
                               const Place& end) const {
-    // The side of the edge on which the common line of both planes lies decides this.
+    // The result follows from the side of the edge on which the common line of both planes lies.
     const bool is_cyclic = next_axis(one) == other;
     const std::size_t u = is_cyclic ? one : other;
     const std::size_t v = is_cyclic ? other : one;
@@ -441,8 +441,8 @@ CutGrid::CutGrid(const SurfaceMesh& mesh, GridPlanes planes, const Context& cont
   failing_.erase(std::unique(failing_.begin(), failing_.end()), failing_.end());
 }
 
-/// Records shells that no plane of the grid cuts. Their cube fails, unless the shell is the outer shell of a body
-/// without tunnels.
+/// Records shells that no plane of the grid cuts. The cube that contains such a shell fails, unless the shell is the
+/// outer shell of a body without tunnels.
 void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface) {
   std::vector<bool> is_cut(surface.euler.size(), false);
   for (const Arc& arc : surface.arcs) {
@@ -451,7 +451,7 @@ void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface
   const auto vertices = mesh.vertices();
   std::vector<std::uint32_t> closed;
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
-    // find() returns the smallest number in a piece. If that is not a vertex, a plane cuts the piece.
+    // find() returns the smallest number in a piece. If this number is not that of a vertex, a plane cuts the piece.
     if (surface.pieces.find(v) == v && !is_cut[v]) closed.push_back(v);
   }
   if (closed.empty()) return;

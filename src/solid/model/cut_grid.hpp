@@ -43,9 +43,9 @@ struct Arc {
 
 /// Exact intersections of a surface with the cells of a grid.
 ///
-/// A piece is a connected part of the surface in one open cube. Each vertex has a number. Each part of an edge has one
-/// in a cube that contains no end of the edge. Each part of a triangle has one in a cube without parts of its sides. A
-/// piece has the smallest number of its elements.
+/// A piece is a connected part of the surface in one open cube. Each vertex has a number. A part of an edge has a
+/// number in each cube that contains no end of the edge. A part of a triangle has a number in each cube that contains
+/// no part of the triangle's sides. A piece has the smallest number of its elements.
 struct TracedSurface {
   std::vector<Place> cube_of_vertex;
   std::vector<GridCrossing> crossings;

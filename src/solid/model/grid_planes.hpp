@@ -37,7 +37,7 @@ class GridPlanes {
     return {at(0, place[0]), at(1, place[1]), at(2, place[2])};
   }
   /// Returns the cube that contains a point between the outermost planes. If the point lies in the last plane, returns
-  /// a place beyond the last cube.
+  /// indices beyond the last cube.
   [[nodiscard]] Place cube(const Vec3d& p) const { return {between(0, p.x), between(1, p.y), between(2, p.z)}; }
 
  private:

@@ -148,8 +148,8 @@ class Assembly {
     }
   }
 
-  /// Sets missing witnesses of extra cells. Such a cell is a face of a plain cell, and an inside node of that plain
-  /// cell becomes the witness.
+  /// Sets missing witnesses of extra cells. An extra cell without a witness is a face of a plain cell. An inside node
+  /// of this plain cell becomes the witness.
   void witness_by_cofaces(ExtraModelCells& out) const {
     for (const auto& [extra, plain] : out.cofaces) {
       if (has_witness_[extra]) continue;

@@ -45,14 +45,14 @@ struct ModelCells {
 /// for an edge.
 struct ExtraModelCells {
   ModelCells cells;  ///< the extra cells; see `first` for the numbers of their faces
-  /// A face with a number below this is a cell of the lattice. Otherwise it is the extra cell with this number
-  /// subtracted.
+  /// A face with a number below this is a cell of the lattice. Any other face is the extra cell whose number is the
+  /// face's number minus `first`.
   std::uint32_t first = 0;
   /// For each extra cell outside split cubes, which come first: the cell of the voxels that would stand for it.
   std::vector<Cell> places;
-  /// Cells of the voxels that are not in the model, in ascending order. The model has extra cells in their place.
+  /// Cells of the voxels that are not in the model, in ascending order. In the model, extra cells replace these cells.
   std::vector<Cell> replaced;
-  /// Pairs of an extra cell, by number, and a cell of the voxels of which it is a face; in ascending order.
+  /// Pairs of an extra cell (by number) and a cell of the voxels that has the extra cell as a face; in ascending order.
   std::vector<std::array<std::uint32_t, 2>> cofaces;
 };
 /// Returns the differences between a model and its voxels.

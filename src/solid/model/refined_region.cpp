@@ -145,8 +145,8 @@ void RefinedRegion::find_crossings(std::uint32_t segment) {
   sort_along(mesh_, s.axis, low, found);
 }
 
-/// Finds which corners are inside the solid. At nodes of the grid this is known. It spreads from there along segments,
-/// whose crossings switch between inside and outside.
+/// Finds which corners are inside the solid. At nodes of the grid, the result is known. From the nodes, it spreads
+/// along segments, whose crossings switch between inside and outside.
 void RefinedRegion::find_inside() {
   constexpr std::uint8_t unknown = 2;
   const auto corners = cells_->corners();
@@ -303,8 +303,8 @@ void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
     offset += rectangles_[r].components;
   }
   scratch.pieces.find(mesh_, boxes_[box], triangles_[box], arcs, passing, components);
-  // BoxSplitter has tested this box, so the result is not needed. Dividing its faces into rectangles does not change
-  // it.
+  // BoxSplitter has tested this box, so the result is not needed. Dividing the faces of the box into rectangles does
+  // not change this result.
   static_cast<void>(components.finish([&](std::uint32_t piece) { return scratch.pieces.euler(piece); }));
   for (std::size_t k = 0; k < parts; ++k) part_component_[box].push_back(components.of_part(k));
   const auto bodies = scratch.pieces.bodies();
