@@ -17,7 +17,7 @@ namespace blum {
 
 /// Returns one complex with the cells of all given complexes, one complex after the other. No vertices are merged.
 /// @throws InvalidOption if two complexes with vertices have different vertex columns, or the same columns in another
-/// order. The same condition applies to the columns of edges and of triangles. Also thrown if the result has more than
+/// order. Columns of edges and columns of triangles must agree in the same way. Also thrown if the result has more than
 /// 2^31 - 1 vertices.
 [[nodiscard]] Complex disjoint_union(std::span<const Complex> parts);
 

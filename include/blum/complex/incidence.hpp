@@ -22,8 +22,8 @@ class Incidence {
  public:
   Incidence() = default;
   /// Computes the incidences of a complex.
-  /// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice. It is
-  /// also thrown if there are 2^32 or more listed edges and sides of triangles in total. Cancelled.
+  /// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice.
+  /// InvalidOption is also thrown if there are 2^32 or more listed edges and sides of triangles in total. Cancelled.
   /// Cost: linear except for sorting the edges of each vertex; about 60 bytes per triangle.
   explicit Incidence(const ComplexView& complex, const Context& context = {});
 

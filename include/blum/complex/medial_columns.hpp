@@ -42,9 +42,9 @@ namespace medial_columns {
 
 /// Vertices, float64: exact distance to the surface, mesh units.
 inline constexpr std::string_view radius = "radius";
-/// Vertices, 3 x float64: the two footprints. The first is the closest point of the surface. The second is the closest
-/// point of another part of the surface that is about equally close. If only one part is close, both columns contain
-/// the same point.
+/// Vertices, 3 x float64: the two footprints. Footprint 0 is the closest point of the surface. Footprint 1 is the
+/// closest point of another part of the surface that is about equally close. If only one part is close, both columns
+/// contain the same point.
 inline constexpr std::array<std::string_view, 2> footprints{"footprint_0", "footprint_1"};
 /// Vertices, int32: the sites of the input mesh, or voxels of the input image, that contain the footprints; -1 if
 /// unknown.
@@ -117,8 +117,8 @@ struct MedialLevels {
   std::span<const float> vertex_until, edge_from, edge_until, triangle_until;
 };
 
-/// Returns the message for a missing column of medial_columns. It contains the name of the column, and the file formats
-/// that store this column.
+/// Returns the message for a missing column of medial_columns. The message contains the name of the column, and the
+/// file formats that store this column.
 /// @param kind  "vertices", "edges" or "triangles".
 [[nodiscard]] std::string missing_medial_column(std::string_view kind, std::string_view name);
 

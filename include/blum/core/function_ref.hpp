@@ -15,8 +15,8 @@ class FunctionRef;
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
-  // The constructor stores the address of the object instead of forwarding it, and call_ restores its type. It is
-  // implicit, so that a lambda can be passed directly.
+  // The constructor stores the address of the object instead of forwarding it, and call_ restores its type. The
+  // constructor is implicit, so that a lambda can be passed directly.
   // NOLINTBEGIN(google-explicit-constructor,cppcoreguidelines-missing-std-forward,cppcoreguidelines-pro-type-const-cast)
   template <class Callable>
     requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&

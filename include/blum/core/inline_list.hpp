@@ -9,8 +9,8 @@
 
 namespace blum {
 
-/// List of up to `most` values, stored in the object itself. Unlike an array, it does not initialise memory that
-/// contains no value yet. This saves time in loops that construct a list in each iteration.
+/// List of up to `most` values, stored in the object itself. Unlike an array, the list does not initialise memory that
+/// contains no value yet. So loops that construct a list in each iteration save time.
 template <class T, std::size_t most>
 class InlineList {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

@@ -35,7 +35,8 @@ enum class Start {
 /// calling thread. The loop does not wait for threads that are busy elsewhere.
 ///
 /// @param phase  name for Context::progress. An empty name reports no progress.
-/// @param body   must not throw, except std::bad_alloc. The first exception is rethrown once all workers have stopped.
+/// @param body   must not throw, except std::bad_alloc. If `body` throws, the first exception is rethrown after all
+///               workers have stopped.
 /// @throws Cancelled if the caller asked to stop. The loop checks for this request before every range.
 void parallel_for(const Context& context, std::size_t count, std::size_t grain, std::string_view phase,
                   const std::function<void(const WorkRange&)>& body, Start start = Start::measured);

@@ -7,8 +7,8 @@
 
 namespace blum {
 
-/// Vector with the components x, y, z. It is an aggregate of exactly three T, so an array of n vectors can be viewed as
-/// T[n][3].
+/// Vector with the components x, y, z. Vec3 is an aggregate of exactly three T, so an array of n vectors can be viewed
+/// as T[n][3].
 template <class T>
 struct Vec3 {
   T x{}, y{}, z{};

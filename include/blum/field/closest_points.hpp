@@ -51,10 +51,10 @@ struct ClosestPoint {
   TriangleId triangle;  ///< smallest index of a triangle that contains the site; none() if no triangle does
 };
 
-/// Returns the unit vector along which the signed distance grows fastest. It points away from the surface if the query
-/// is outside, and towards the surface if the query is inside. On the medial axis, the distance grows fastest along
-/// several vectors, and one of these is returned. Returns nullopt if the query is on the surface (within rounding), or
-/// if no closest point was found. ClosestPointQuery::gradient() also has a value on the surface.
+/// Returns the unit vector along which the signed distance grows fastest. The vector points away from the surface if
+/// the query is outside, and towards the surface if the query is inside. On the medial axis, the distance grows fastest
+/// along several vectors, and one of these is returned. Returns nullopt if the query is on the surface (within
+/// rounding), or if no closest point was found. ClosestPointQuery::gradient() also has a value on the surface.
 [[nodiscard]] std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found);
 
 /// Returns the weights of the corners of `found.triangle`, in their order. The closest point is the weighted mean of
@@ -84,7 +84,7 @@ class ClosestPointQuery {
  public:
   /// @throws InvalidMesh, InvalidOption, Cancelled.
   /// Cost: O(n log n) for n primitives. With 70,000 triangles on two cores, construction takes about 80 ms, or 30 ms if
-  /// unsigned. It takes longer if winding numbers are needed.
+  /// unsigned. Construction takes longer if winding numbers are needed.
   explicit ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options = {},
                              const Context& context = {});
   /// Constructs a query object and prepares it with prepare_for_many(). With several threads, one call of for_many() is
@@ -131,7 +131,8 @@ class ClosestPointQuery {
   /// triangles.
   /// @param found  result of nearest(query).
   /// @return       nullopt if nothing was found, or if the site has no normal: segments, points, triangles without
-  /// area. Cost: 0.01 us. The first query on the surface computes all normals, unless signs need them: O(triangles).
+  /// area. Cost: 0.01 us. If signs do not need normals, the first query on the surface computes all normals:
+  /// O(triangles).
   [[nodiscard]] std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found) const;
 
   /// Returns the gradient at each query, computed with threads.
@@ -172,7 +173,7 @@ class ClosestPointQuery {
   /// bit. Queries become slower if primitives that were neighbours move apart; construct a new object in this case.
   /// Must not run at the same time as queries.
   /// @param vertices  the new positions, one for each vertex of the mesh.
-  /// @throws InvalidMesh. In this case, the object is unchanged.
+  /// @throws InvalidMesh. After InvalidMesh, the object is unchanged.
   /// @throws Cancelled. After Cancelled, refit() must be called again before any other function.
   /// Cost: O(n). For 100,000 triangles on two cores, refit() takes about 2 ms if distances are unsigned. If distances
   /// are signed, the rule for signs is also chosen again, which takes as long as in the constructor. The structure for

@@ -12,7 +12,7 @@ namespace blum {
 /// Types of numbers, in the order of VoxelImageView::Values.
 enum class ElementType : std::uint8_t { uint8, int8, uint16, int16, uint32, int32, uint64, int64, float32, float64 };
 
-/// View of an array in a CUDA device's memory. Its rows follow each other without gaps.
+/// View of an array in a CUDA device's memory. The rows of the array follow each other without gaps.
 struct DeviceArrayView {
   const void* data = nullptr;
   ElementType type = ElementType::float64;

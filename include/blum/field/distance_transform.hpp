@@ -66,7 +66,7 @@ struct Description<DistanceTransformOptions> {
 /// The result takes 8 bytes per voxel, or 4 without sites. The working memory takes 1/8 byte per voxel, and a few MiB
 /// per thread. Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use
 /// no lower envelopes. Instead, these passes rely on the fact that the index of the closest row is monotone along a
-/// column (Aggarwal 1987). They process many columns at a time.
+/// column (Aggarwal 1987). The passes along y and z process many columns at a time.
 [[nodiscard]] Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                        const Context& context = {});
 

@@ -36,8 +36,8 @@ enum class SignMode : std::uint8_t {
               ///< oriented. Signs are exact, because crossings with the mesh are counted along the rows of the grid. If
               ///< shells cross or face different ways, angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide
               ///< instead.
-  winding,    ///< A node is inside if its generalized winding number (Jacobson 2013) is above 1/2. This rule works for
-              ///< any soup of triangles.
+  winding,    ///< A node is inside if its generalized winding number (Jacobson 2013) is above 1/2. Winding numbers
+              ///< exist for any soup of triangles.
   none        ///< Distances are unsigned.
 };
 

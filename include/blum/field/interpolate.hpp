@@ -35,10 +35,10 @@ struct InterpolatedGradients {
 };
 
 /// Returns the values and the gradients of the trilinear interpolation. The gradient has a length of about 1 where the
-/// distance is smooth, and is shorter near edges and bisectors. It jumps at the borders of cells. A point on a border
-/// gets the gradient of the cell with the larger indices. A point in the last layer gets the gradient of the cell
-/// before this layer. The component of the gradient along an axis with a single layer is 0. Outside of the grid, the
-/// gradient is NaN. If a node of the cell is infinitely far, the gradient may be infinite or NaN.
+/// distance is smooth, and is shorter near edges and bisectors. The gradient jumps at the borders of cells. A point on
+/// a border gets the gradient of the cell with the larger indices. A point in the last layer gets the gradient of the
+/// cell before this layer. The component of the gradient along an axis with a single layer is 0. Outside of the grid,
+/// the gradient is NaN. If a node of the cell is infinitely far, the gradient may be infinite or NaN.
 [[nodiscard]] InterpolatedGradients interpolate_with_gradient(const Field& field, std::span<const Vec3d> points,
                                                               const Context& context = {});
 

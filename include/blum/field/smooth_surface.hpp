@@ -56,7 +56,7 @@ struct SmoothSurface {
 ///
 /// - Taubin's filter (1995) smooths the surface and hardly shrinks it. Waves of the surface shorter than about 5 voxels
 ///   nearly vanish; longer waves remain. For round tubes with a radius of at least 1.5 voxels, the mean radius of the
-///   result is correct within 0.1 voxels. The same accuracy holds for balls with a radius of at least 2 voxels.
+///   result is correct within 0.1 voxels. The mean radius of balls is equally accurate if it is at least 2 voxels.
 ///
 /// @return      vertices in world coordinates. The bytes are the same for any number of threads.
 /// @throws InvalidImage, also if no voxel is selected.

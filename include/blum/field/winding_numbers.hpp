@@ -25,9 +25,9 @@ namespace blum {
 /// @throws InvalidMesh.
 /// @throws InvalidOption, also for a point that is not finite. The message contains the index of the point.
 /// @throws Cancelled.
-/// Cost: O(n log n) for n triangles, plus one query per point. Times of queries are given for one core. If the mesh has
-/// at most 2,048 boundary edges, a point takes 0.2 to 1 us, plus 3 ns per boundary edge. For other meshes, a point
-/// takes the time of WindingNumber::estimate() or 3 ns per triangle, whichever is less.
+/// Cost: O(n log n) for n triangles, plus one query per point. The following times of a query are for one core. If the
+/// mesh has at most 2,048 boundary edges, a point takes 0.2 to 1 us, plus 3 ns per boundary edge. For other meshes, a
+/// point takes the time of WindingNumber::estimate() or 3 ns per triangle, whichever is less.
 [[nodiscard]] std::vector<double> winding_numbers(const MeshView& mesh, std::span<const Vec3d> points,
                                                   double max_error = 1e-6, const Context& context = {});
 

@@ -22,16 +22,16 @@ namespace blum {
 /// @param field  field.grid must have at least two layers along each axis. field.distance must be finite; field.site is
 ///               ignored. If the field has a band, the surface is meaningful only if the level lies within the band.
 /// @param level  finite, mesh units.
-/// @return       a consistently oriented manifold that does not cross itself. It is closed if the surface does not
-///               leave the grid; otherwise it has a boundary where the surface leaves the grid. It has no triangles if
-///               the field does not cross the level. Each tetrahedron edge that crosses the level has one vertex, which
-///               all triangles at that edge share. A tetrahedron edge is a grid edge, a diagonal of a cube's face, or a
-///               cube's diagonal. Vertices are numbered in the order of the nodes. A vertex lies where the distance,
-///               interpolated linearly along the edge, equals the level. The vertex is at least a thousandth of the
-///               edge's length away from both ends. So no two vertices coincide, even if a node is exactly at the
-///               level. Where the exact surface is smooth, the error of the result is O(spacing^2) plus at most a
-///               thousandth of a cube's diagonal. Near edges and corners of the exact surface, the error of vertices is
-///               up to half a cube's diagonal. The bytes are the same for any number of threads.
+/// @return       a consistently oriented manifold that does not cross itself. The mesh is closed if the surface does
+///               not leave the grid; otherwise the mesh has a boundary where the surface leaves the grid. The mesh has
+///               no triangles if the field does not cross the level. Each tetrahedron edge that crosses the level has
+///               one vertex, which all triangles at that edge share. A tetrahedron edge is a grid edge, a diagonal of a
+///               cube's face, or a cube's diagonal. Vertices are numbered in the order of the nodes. A vertex lies
+///               where the distance, interpolated linearly along the edge, equals the level. The vertex is at least a
+///               thousandth of the edge's length away from both ends. So no two vertices coincide, even if a node is
+///               exactly at the level. Where the exact surface is smooth, the error of the result is O(spacing^2) plus
+///               at most a thousandth of a cube's diagonal. Near edges and corners of the exact surface, the error of
+///               vertices is up to half a cube's diagonal. The bytes are the same for any number of threads.
 /// @throws InvalidGrid, also for a grid with a single layer.
 /// @throws InvalidOption, also if the numbers of distances and nodes differ, or if a distance or the level is not
 /// finite.

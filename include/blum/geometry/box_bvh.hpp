@@ -20,7 +20,7 @@ namespace blum {
 /// and passes their indices to a function of the caller, the visitor. The hierarchy for triangles, segments and points
 /// is Bvh.
 ///
-/// All queries may run on many threads at once. They allocate no memory except for the lists that they return. The
+/// All queries may run on many threads at once. Queries allocate no memory except for the lists that they return. The
 /// order of visits does not depend on the number of threads.
 /// Cost: O(n log n) time to build, and 60 bytes per box, in contiguous arrays. A query for one box costs about O(log
 /// n).
@@ -56,8 +56,8 @@ class BoxBvh {
   /// approximately in rising order of t. No box is missed because of rounding.
   void for_each_along(const Ray& ray, double limit, FunctionRef<double(std::uint32_t)> visit) const;
 
-  /// Calls visit(a, b) for pairs of a box a of this hierarchy and a box b of `other`. It visits all pairs that are at
-  /// most `margin` apart along every axis, and stops if visit() returns false.
+  /// Calls visit(a, b) for pairs of a box a of this hierarchy and a box b of `other`. All pairs that are at most
+  /// `margin` apart along every axis are visited, until visit() returns false.
   void for_each_pair(const BoxBvh& other, double margin, FunctionRef<bool(std::uint32_t, std::uint32_t)> visit) const;
   /// Calls visit(a, b) for all pairs of boxes of this hierarchy that are at most `margin` apart along every axis. Stops
   /// if visit() returns false. Each pair is visited once, in either order.

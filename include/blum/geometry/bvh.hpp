@@ -48,7 +48,7 @@ class BvhPart {
   std::vector<Leaves> leaves_;
 };
 
-/// Crossing of a ray and a triangle. Its existence, `side` and `on_border` are exact.
+/// Crossing of a ray and a triangle. The existence of a crossing, `side` and `on_border` are exact.
 struct RayCrossing {
   double t = 0;  ///< the crossing is at origin + t * direction; t >= 0
   TriangleId triangle;
@@ -159,8 +159,8 @@ class Bvh {
   [[nodiscard]] bool may_touch(const Box3& box) const;
 
   /// Returns all primitives in the order of the leaves. Entries 8 k to 8 k + 7, for any k, are neighbours in space:
-  /// when the hierarchy was built, a compact box contained these eight primitives. The same holds for groups of 64,
-  /// 512, ... entries.
+  /// when the hierarchy was built, a compact box contained these eight primitives. Compact boxes also contained groups
+  /// of 64, 512, ... consecutive entries.
   [[nodiscard]] std::span<const std::uint32_t> order() const;
 
   /// Returns the box around all primitives, mesh units.

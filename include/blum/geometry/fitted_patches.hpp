@@ -52,7 +52,7 @@ void check_patch_fit(const std::optional<double>& tolerance);
 /// all rules.
 ///
 /// @param sites  of the mesh, which passes validate().
-/// @throws Cancelled. Cost: near-linear, about 10 us per triangle. It runs on one thread.
+/// @throws Cancelled. Cost: near-linear, about 10 us per triangle. The function runs on one thread.
 [[nodiscard]] FittedPatches fit_patches(const MeshView& mesh, const SiteTable& sites, const FlatFaces& faces,
                                         const Context& context);
 

@@ -50,7 +50,7 @@ inline constexpr std::string_view touches_when_resolved =
 inline constexpr std::string_view shells_cross = "its shells are not nested: they cross or coincide";
 
 /// Returns all defects of edges and vertices because of which a mesh bounds no polyhedron. The text is the end of a
-/// message "the mesh bounds no polyhedron: ...". It is empty if edges and vertices have no defects.
+/// message "the mesh bounds no polyhedron: ...". The text is empty if edges and vertices have no defects.
 [[nodiscard]] std::string obstacles(const Topology& facts);
 /// Return the end of a message "the mesh bounds no polyhedron: ..." for pairs of triangles that cross or touch.
 /// @param is_complete  false if more than `pairs` pairs exist.

@@ -19,10 +19,10 @@ struct MovingBox {
   Box3 end;
 };
 
-/// Bounding-volume hierarchy over moving boxes, with eight children per node. It finds pairs of boxes that may touch at
-/// some time. Two boxes may sweep the same region at different times, for example in a cloth that flies by. Such a pair
-/// is not visited, while a hierarchy of boxes around whole motions would visit it. The indices of boxes are passed to a
-/// function of the caller, the visitor.
+/// Bounding-volume hierarchy over moving boxes, with eight children per node. The hierarchy finds pairs of boxes that
+/// may touch at some time. Two boxes may sweep the same region at different times, for example in a cloth that flies
+/// by. The hierarchy does not visit such a pair, while a hierarchy of boxes around whole motions would. The indices of
+/// boxes are passed to a function of the caller, the visitor.
 ///
 /// All queries may run on many threads at once, and allocate no memory. Every pair of boxes that touch at some time is
 /// visited. Because boxes are rounded to single precision, a few pairs that do not touch are visited, too. Cost: O(n
@@ -40,8 +40,8 @@ class MovingBoxBvh {
   /// Returns the number of blocks. A block is a group of eight boxes. Threads can share a loop over blocks.
   [[nodiscard]] std::size_t block_count() const;
 
-  /// Calls visit(a, b) for pairs of a box a in a block of this hierarchy, and a box b of `other`. It visits all pairs
-  /// that may touch at some time.
+  /// Calls visit(a, b) for pairs of a box a in a block of this hierarchy, and a box b of `other`. All pairs that may
+  /// touch at some time are visited.
   void for_each_pair(std::size_t block, const MovingBoxBvh& other,
                      FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
   /// Calls visit(a, b) for pairs of a box in a block and any box of this hierarchy that may touch at some time. If this

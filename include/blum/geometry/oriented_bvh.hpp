@@ -39,7 +39,8 @@ class OrientedBvh {
   };
 
   /// Visitor: a function that is called with a primitive of this hierarchy, a primitive of the other hierarchy, and a
-  /// lower bound on their distance. It returns the limits for the rest of the search. Limits can only become narrower.
+  /// lower bound on their distance. A visitor returns the limits for the rest of the search. Limits can only become
+  /// narrower.
   using Visit = FunctionRef<Wanted(std::uint32_t, std::uint32_t, double)>;
 
   /// @param mesh  must pass validate(mesh). @throws Cancelled.

@@ -14,8 +14,8 @@
 
 namespace blum::detail {
 
-/// A polygon with holes: a list of loops, each of consecutive points. The outline comes first, counter-clockwise. Then
-/// come the holes, clockwise.
+/// A polygon with holes: a list of loops, each of consecutive points. The outline comes first, counter-clockwise. The
+/// holes follow, clockwise.
 struct PlanePolygon {
   using Point = std::array<double, 2>;
 

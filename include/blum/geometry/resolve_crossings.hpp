@@ -73,8 +73,8 @@ struct ResolvedMesh {
                                            ///< vertices
   std::vector<std::uint32_t> triangle_of;  ///< for each triangle of `mesh`: the triangle of the input that contains it
 
-  /// For each triangle of `mesh`: the body that it bounds, as the index of the body's outer shell in topology(mesh). It
-  /// is empty if the crossings are not resolved.
+  /// For each triangle of `mesh`: the body that it bounds, as the index of the body's outer shell in topology(mesh).
+  /// The list is empty if the crossings are not resolved.
   std::vector<std::uint32_t> body_of;
   bool has_inside = true;  ///< false if no point is inside; `obstacle` then contains this reason
 
@@ -82,8 +82,8 @@ struct ResolvedMesh {
 };
 
 /// Computes the boundary of the set of points around which a closed mesh winds at least options.least_winding times (by
-/// default once). It resolves meshes that cross, overlap or touch themselves, have edges with more than two triangles,
-/// or have triangles without area. Vertices at the same position count as one vertex.
+/// default once). The mesh may cross, overlap or touch itself, have edges with more than two triangles, or have
+/// triangles without area. Vertices at the same position count as one vertex.
 ///
 /// Triangles are cut along their crossings, and the parts that are not on the boundary are removed. Triangles that
 /// nothing crosses or touches are kept or removed as a whole. Exact arithmetic decides which parts exist and how they

@@ -39,8 +39,8 @@ struct SelfIntersections {
 /// if the surface crosses it. So a mesh is certainly free of crossings only if `pairs` is empty.
 ///
 /// @param mesh   must pass validate(mesh).
-/// @param limit  the search ends when it has found more than `limit` pairs. Then `pairs` has `limit` entries, which are
-/// the same for any number of threads.
+/// @param limit  the search ends when it has found more than `limit` pairs. In this case, `pairs` has `limit` entries,
+/// which are the same for any number of threads.
 /// @throws InvalidMesh, Cancelled.
 /// Cost: O(n log n) for n triangles, plus the number of pairs of triangles whose boxes touch. On two cores, this takes
 /// about 0.05 s for 70,000 triangles and 0.8 s for 1.6 million. Memory: 250 bytes per triangle.

@@ -12,10 +12,10 @@
 namespace blum {
 
 /// Returns an order of points that keeps neighbours in space together. For any k, the points at positions 8 k to 8 k +
-/// 7 of the order lie in a compact box. The same holds for groups of 64, 512, ... points. The points are split
-/// recursively, across the longest side of their box. In each split, the number of points in the first group is a power
-/// of two. A space-filling curve is not suitable: where the curve leaves a surface and meets the surface elsewhere, a
-/// group would contain points of both regions.
+/// 7 of the order lie in a compact box. Groups of 64, 512, ... consecutive points lie in compact boxes, too. The points
+/// are split recursively, across the longest side of their box. In each split, the number of points in the first group
+/// is a power of two. A space-filling curve is not suitable: where the curve leaves a surface and meets the surface
+/// elsewhere, a group would contain points of both regions.
 ///
 /// @param position  called once per index from 0 to count - 1, from several threads; must return finite points.
 /// @return          the indices of the points in this order. Points at equal positions keep their order. The result is

@@ -23,7 +23,7 @@ struct SurfacePatch {
   Vec3d normal;     ///< Mean normal over the area, scaled to unit length; 0 if undefined, as for a closed surface.
 };
 
-/// Returns the normals of all triangles. Their lengths are twice the areas.
+/// Returns the normals of all triangles. The length of a normal is twice the triangle's area.
 [[nodiscard]] std::vector<Vec3d> triangle_normals(const MeshView& mesh);
 
 /// Returns a number for each edge of a mesh. The number is 1 if the edge has exactly two triangles with normals, and

@@ -22,9 +22,9 @@ namespace blum {
 struct Orientation {
   bool closed = false;    ///< a triangle exists, and every edge of a triangle has exactly two triangles
   bool oriented = false;  ///< no edge with two triangles is traversed in the same direction by both
-  /// True if closed && oriented, and every shell faces away from the solid. This means that a shell inside an even
-  /// number of other shells has a positive volume. A shell inside an odd number of other shells bounds a void and has a
-  /// negative volume. A shell of volume 0 does not face outwards.
+  /// True if closed && oriented, and every shell faces away from the solid. For outward-facing meshes, a shell inside
+  /// an even number of other shells has a positive volume. A shell inside an odd number of other shells bounds a void
+  /// and has a negative volume. A shell of volume 0 does not face outwards.
   bool outward = false;
   std::size_t boundary_edges = 0;      ///< edges with one triangle
   std::size_t nonmanifold_edges = 0;   ///< edges with more than two triangles
@@ -38,8 +38,8 @@ struct Orientation {
 /// Cost: O(triangles); about 1 ms for 70,000 triangles. If there are several shells, the cost is that of topology().
 [[nodiscard]] Orientation orientation(const MeshView& mesh, const SiteTable& sites);
 
-/// Closed, consistently oriented component of the surface. It consists of triangles connected through shared edges.
-/// Every edge has exactly two triangles, which traverse it in opposite directions.
+/// Closed, consistently oriented component of the surface. A shell consists of triangles connected through shared
+/// edges. Every edge has exactly two triangles, which traverse it in opposite directions.
 struct Shell {
   std::size_t triangles = 0;
   Box3 bounds;               ///< mesh units

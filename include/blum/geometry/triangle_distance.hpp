@@ -32,9 +32,9 @@ struct TriangleDistance {
 /// Returns the closest points of two triangles. A triangle may have no area: it is then a segment or a point.
 ///
 /// The distance is 0 if and only if the triangles have a common point. Otherwise it is at least the smallest normal
-/// double. These two guarantees require that the magnitude of each coordinate is 0 or at least 1e-80 times the largest
-/// magnitude. Positive distances have an error of a few 1e-15 times the largest coordinate relative to a corner of the
-/// triangles. The error does not depend on the shape of the triangles.
+/// double. The guarantees for distance 0 and positive distances require that the magnitude of each coordinate is 0 or
+/// at least 1e-80 times the largest magnitude. Positive distances have an error of a few 1e-15 times the largest
+/// coordinate relative to a corner of the triangles. The error does not depend on the shape of the triangles.
 /// @param a, b  corners of the triangles; finite, of magnitude at most 1e150.
 /// @return      closest points and their distance. If the two triangles are exchanged, the result is the same up to
 ///              rounding.

@@ -20,13 +20,13 @@ namespace blum {
 /// - Triangles, segments and points keep their order. The shape loses no points, even if triangles are degenerate after
 ///   welding. A triangle with two equal corners (a, a, b) is removed. The segment (a, b) is appended to `segments` if
 ///   no other triangle or segment has this edge. A triangle or segment whose corners are all the same vertex is
-///   removed. Its vertex is appended to `points` if nothing else uses this vertex. Repeated vertices in `points` are
-///   kept once. Repeated triangles are all kept.
+///   removed. The vertex of a removed element is appended to `points` if nothing else uses this vertex. Repeated
+///   vertices in `points` are kept once. Repeated triangles are all kept.
 /// - Vertices with a coordinate that is not finite are merged only with vertices at exactly the same position.
 ///
-/// Cost: O(V + F) expected time for V vertices and F triangles if tolerance is 0, otherwise O(V log V + F). This cost
-/// holds for coordinates of any magnitude, and for many vertices that coincide or are close together. A tolerance below
-/// 1e-300 counts as 0.
+/// Cost: O(V + F) expected time for V vertices and F triangles if tolerance is 0, otherwise O(V log V + F). The cost is
+/// the same for coordinates of any magnitude, and for many vertices that coincide or are close together. A tolerance
+/// below 1e-300 counts as 0.
 /// @throws InvalidOption if tolerance is negative or not finite.
 /// @throws InvalidMesh if an index is out of range or there are more than max_id_count vertices.
 [[nodiscard]] TriangleMesh weld(const MeshView& mesh, double tolerance = 0);

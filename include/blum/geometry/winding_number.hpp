@@ -27,7 +27,7 @@ namespace blum {
 /// destroyed after construction.
 class WindingNumber {
  public:
-  /// @param mesh  must pass validate(mesh). Its segments and points have no winding number and are ignored.
+  /// @param mesh  must pass validate(mesh). The mesh's segments and points have no winding number and are ignored.
   /// @throws InvalidMesh, also if the mesh has more than max_id_count sites; Cancelled.
   /// Cost: O(n log n) time for n triangles, about 12 ms for 70,000 on two cores, and 100 bytes per triangle.
   explicit WindingNumber(const MeshView& mesh, const Context& context = {});
@@ -113,9 +113,9 @@ class WindingNumber {
   ///                time.
   [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
-  /// Returns true if w is constant along paths that cross no triangle. This is the case if triangles traverse every
-  /// edge equally often in both directions. Then w is an integer at all points that are not on the surface. Edges with
-  /// ends at the same positions count as the same edge.
+  /// Returns true if w is constant along paths that cross no triangle: if triangles traverse every edge equally often
+  /// in both directions. If so, w is an integer at all points that are not on the surface. Edges with ends at the same
+  /// positions count as the same edge.
   [[nodiscard]] bool is_piecewise_constant() const;
 
   /// Returns the number of triangles.

@@ -13,7 +13,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/grid/voxel_image.hpp"
 
-/// In these images, voxels outside the shape are 0. The shape does not touch the border of the image, unless stated
+/// In generated images, voxels outside the shape are 0. The shape does not touch the border of the image, unless stated
 /// otherwise. Stated topologies are those of the non-zero voxels (26-connected; the background is 6-connected). All
 /// functions throw InvalidOption for options out of range, and for more than 2^30 voxels. Cost: O(voxels).
 namespace blum {

@@ -94,7 +94,7 @@ struct RoundedLabels {
 /// @param labels  requested labels; if empty, all labels are requested.
 /// @return        nullopt if no value has to be rounded, or if rounding is not safe.
 /// @throws InvalidImage if rounding is not safe, and the value of a voxel is close to a requested label, but not equal
-/// to it. Selecting such voxels would be a guess.
+/// to it. Selecting voxels whose value nearly equals a label would be a guess.
 /// @throws Cancelled.
 /// Cost: one pass over images of floating-point numbers. Other images cost nothing.
 [[nodiscard]] std::optional<RoundedLabels> rounded_labels(const VoxelImageView& image,

@@ -14,7 +14,7 @@
 
 namespace blum::detail {
 
-// Each test is a single comparison, so that loops over it vectorise. They are constexpr because device kernels call
+// Each test is a single comparison, so that loops over it vectorise. Tests are constexpr because device kernels call
 // them, too.
 struct NoVoxel {
   template <class T>

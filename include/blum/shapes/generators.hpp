@@ -12,12 +12,12 @@
 
 /// Lengths are in mesh units and at most 1e100, angles in degrees. Unless stated otherwise, a shape is centred at the
 /// origin, and bounds a solid. Its mesh is a closed manifold without self-intersections, consistently oriented, and
-/// faces away from the solid. ShapeInfo::betti gives its topology. The same options give the same mesh on every
-/// platform, except for the last bits of sines and cosines.
+/// faces away from the solid. ShapeInfo::betti gives the topology of the solid. The same options give the same mesh on
+/// every platform, except for the last bits of sines and cosines.
 ///
-/// All functions throw InvalidOption if options contradict each other or are out of the ranges given here. They also
-/// throw InvalidOption if the mesh would have more than 50 million triangles. Cost: O(triangles), unless stated
-/// otherwise.
+/// All functions throw InvalidOption if options contradict each other or are out of the ranges given here. All
+/// functions also throw InvalidOption if the mesh would have more than 50 million triangles. Cost: O(triangles), unless
+/// stated otherwise.
 namespace blum {
 
 // ---- Round shapes (generators_round.cpp) ----
@@ -40,8 +40,8 @@ struct UvSphereOptions {
   int longitudes = 48;  ///< >= 3
   int latitudes = 24;   ///< number of bands from pole to pole, >= 2
 };
-/// Makes a sphere of longitudes and latitudes. It has needle-shaped triangles at the poles, and rings of vertices on
-/// common circles.
+/// Makes a sphere of longitudes and latitudes. The mesh has needle-shaped triangles at the poles, and rings of vertices
+/// on common circles.
 [[nodiscard]] TriangleMesh make_uv_sphere(const UvSphereOptions& options = {});
 
 struct CylinderOptions {
@@ -194,7 +194,7 @@ struct GearOptions {
   double bore_radius = 0.2;   ///< radius of the bore (central hole), >= 0, below root_radius; 0: no bore
   /// number of round holes between bore and teeth, 0 to 1000. The genus is openings + (bore ? 1 : 0).
   int openings = 5;
-  /// radius of openings, > 0. They lie halfway between bore_radius and root_radius, and must not touch.
+  /// radius of openings, > 0. Openings lie halfway between bore_radius and root_radius, and must not touch.
   double opening_radius = 0.13;
   double thickness = 0.3;  ///< along z, > 0
   int hole_segments = 32;  ///< number of sides of each hole, >= 3
@@ -231,8 +231,8 @@ struct MengerOptions {
   int level = 2;    ///< number of subdivisions, 0 to 5; the sponge consists of 20^level cubes
   double size = 1;  ///< side of the whole sponge, > 0
 };
-/// Makes the boundary of the Menger sponge. It is a manifold: no two of its cubes touch only along an edge or in a
-/// corner.
+/// Makes the boundary of the Menger sponge. The boundary is a manifold: no two cubes of the sponge touch only along an
+/// edge or in a corner.
 [[nodiscard]] TriangleMesh make_menger(const MengerOptions& options = {});
 
 struct FanPartOptions {
@@ -254,7 +254,7 @@ struct SoupOptions {
   double awkward = 0;
   std::uint64_t seed = 1;
 };
-/// Makes loose random triangles, each with its own three vertices. They bound nothing.
+/// Makes loose random triangles, each with its own three vertices. The triangles bound no solid.
 [[nodiscard]] TriangleMesh make_soup(const SoupOptions& options = {});
 
 struct SegmentsOptions {

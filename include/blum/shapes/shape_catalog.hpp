@@ -24,8 +24,8 @@ struct ShapeInfo {
   std::vector<ShapeParameter> parameters;
   /// Makes the mesh. All parameters must be given and in range; make_shape() adds defaults and checks ranges.
   std::function<TriangleMesh(const ShapeParameters&)> make;
-  /// Returns the Betti numbers of the solid (components, tunnels, voids), known from the construction. They are unset
-  /// if the mesh does not bound a solid: open surfaces, soups, segments, points.
+  /// Returns the Betti numbers of the solid (components, tunnels, voids), known from the construction. The numbers are
+  /// unset if the mesh does not bound a solid: open surfaces, soups, segments, points.
   std::function<std::optional<std::array<std::int64_t, 3>>(const ShapeParameters&)> betti;
 };
 
@@ -43,8 +43,9 @@ struct ShapeInfo {
 
 /// Generates the shape with the given name; generators.hpp describes the shapes. Coordinates are the same on every
 /// platform, except for the last bits of sines and cosines.
-/// @throws InvalidOption as find_shape() and complete_parameters(), and for more than 50 million triangles. It is also
-/// thrown for parameters that contradict each other: for example, a tube thicker than its ring, or holes that overlap.
+/// @throws InvalidOption as find_shape() and complete_parameters(), and for more than 50 million triangles.
+/// InvalidOption is also thrown for parameters that contradict each other: for example, a tube thicker than its ring,
+/// or holes that overlap.
 [[nodiscard]] TriangleMesh make_shape(std::string_view name, const ShapeParameters& parameters = {});
 
 }  // namespace blum

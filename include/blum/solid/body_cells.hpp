@@ -34,13 +34,13 @@ struct ExtraCell {
   std::array<End, 2> ends;  ///< For polygons: ends of the interval that the polygon represents.
 };
 
-/// Cellular model of a body (see CellularModel) over a grid. It is stored in two parts. The first part is the set of
-/// voxels whose nodes are inside the body. The second part is the list of cells in which the model differs from the
+/// Cellular model of a body (see CellularModel) over a grid. The model is stored in two parts. One part is the set of
+/// voxels whose nodes are inside the body. The other part is the list of cells in which the model differs from the
 /// union of these closed voxels. Where walls or gaps are thinner than a voxel, the model has extra cells. An extra cell
 /// either belongs to no voxel, or is one of several cells that replace one cell of the lattice. All other cells of the
-/// model are cells of the lattice of voxels. In this lattice, a voxel stands for a node inside the body, and a square
-/// stands for an edge of the grid. An edge of the lattice stands for a square of the grid, and a vertex for a cube of
-/// the grid.
+/// model are cells of the lattice of voxels. In the lattice of voxels, a voxel stands for a node inside the body, and a
+/// square stands for an edge of the grid. An edge of the lattice stands for a square of the grid, and a vertex for a
+/// cube of the grid.
 struct BodyCells {
   CellLattice lattice;         ///< Lattice of the voxels. Voxel (i, j, k) surrounds node (i, j, k) of the grid.
   VoxelSet inside;             ///< Nodes inside the body, decided exactly. For nodes on the surface, see

@@ -56,7 +56,7 @@ struct Description<CellularModelOptions> {
 enum class ModelObstacle : std::uint8_t {
   hole_in_square,  ///< The cross-section of the solid with a side of the box has a hole. For example, it is the
                    ///< cross-section of an empty needle that no split opens.
-  slanted_needle,  ///< The same as `hole_in_square`, but opening the slanted needle would need more than
+  slanted_needle,  ///< A hole as in `hole_in_square`, but of a slanted needle. Opening the needle would take more than
                    ///< ModelFailure::most_cuts splits.
   handle,          ///< A component of the solid in the box has a tunnel, or an inner boundary.
   void_in_cube     ///< A void lies wholly inside the box.
@@ -99,7 +99,8 @@ struct Description<ModelFailure> {
 };
 
 struct CellularModelReport {
-  /// True if, in every cube and box, each component of the solid is contractible. This proves the homotopy type.
+  /// True if, in every cube and box, each component of the solid is contractible, which proves the homotopy type of the
+  /// model.
   bool passes = false;
   GridSpec grid;                        ///< Grid whose nodes are the corners of the cubes.
   std::size_t cut_cubes = 0;            ///< Number of cubes that the surface meets.
@@ -133,12 +134,13 @@ struct Description<CellularModelReport> {
 
 /// Regular cell complex with the homotopy type of a polyhedron, at any resolution.
 ///
-/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube. It has
-/// an edge for each connected component in a square between two cubes. It has a polygon for each interval of a grid
-/// edge inside the solid, and a polyhedron for each grid node inside. If all components are contractible, the model is
-/// homotopy equivalent to the solid. An exact test in each cube decides if the components in it are contractible. A
-/// cube that fails the test is split into boxes until every box passes, or until CellularModelOptions::most_splits is
-/// reached. Walls, gaps and tunnels may be thinner than a cube. Theorem and proof: docs/theory/solid.md.
+/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube. The
+/// model has an edge for each connected component of the solid in a square between two cubes. It has a polygon for each
+/// interval of a grid edge inside the solid, and a polyhedron for each grid node inside. If all components are
+/// contractible, the model is homotopy equivalent to the solid. An exact test in each cube decides if the components in
+/// it are contractible. A cube that fails the test is split into boxes until every box passes, or until
+/// CellularModelOptions::most_splits is reached. Walls, gaps and tunnels may be thinner than a cube. Theorem and proof:
+/// docs/theory/solid.md.
 class CellularModel {
  public:
   [[nodiscard]] const CellularModelReport& report() const;

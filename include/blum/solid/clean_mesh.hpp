@@ -26,8 +26,8 @@ struct CleanReport {
   std::size_t reversed_shells = 0;     ///< Shells that faced into the solid.
   std::size_t collapses = 0;           ///< Vertices that were moved onto a neighbour.
   std::size_t flips = 0;               ///< Edges that were flipped.
-  /// Upper bound on the Hausdorff distance between input and result, rounding included, mesh units. It is at most the
-  /// tolerance.
+  /// Upper bound on the Hausdorff distance between input and result, rounding included, mesh units. The bound is at
+  /// most the tolerance.
   double deviation = 0;
   double smallest_height_before = 0;  ///< Smallest height of an input triangle above its longest side, mesh units.
   double smallest_height = 0;
@@ -83,10 +83,10 @@ struct CleanedMesh {
 /// height of the triangles around it to a quarter of its value, but not further. Finally the whole result is checked
 /// again. All vertices of the result keep their positions. Method and proof of the bound: docs/theory/solid.md.
 ///
-/// @param solid      polyhedron whose bodies do not touch. Solid::surface() is cleaned. Its coordinates must be 0, or
-///                   have magnitudes of 1e-45 to 1e45.
-/// @param tolerance  largest distance between surface and result, in both directions, mesh units. It must be at least
-///                   1e-12 times the diagonal of the box around the surface, and at most that diagonal.
+/// @param solid      polyhedron whose bodies do not touch. Solid::surface() is cleaned. Coordinates of the surface must
+///                   be 0, or have magnitudes of 1e-45 to 1e45.
+/// @param tolerance  largest distance between surface and result, in both directions, mesh units. The tolerance must be
+///                   at least 1e-12 times the diagonal of the box around the surface, and at most that diagonal.
 /// @return           the cleaned mesh; it is the same for any number of threads.
 /// @throws InvalidMesh if the solid is not a polyhedron whose bodies do not touch. InvalidOption if the tolerance is
 /// out of range. Cancelled. Error if the check of the result fails, which would be a bug in Blum.
@@ -95,9 +95,9 @@ struct CleanedMesh {
 [[nodiscard]] CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context = {});
 
 /// Cleans the surface of the solid that a mesh bounds, found by Solid::of().
-/// @param mesh  closed. It may face inwards or outwards. It may cross itself if Solid::of() resolves the crossings. It
-///              may have triangles without area if they can be removed by flips of their longest sides. Its segments,
-///              points and unused vertices are left out.
+/// @param mesh  closed. The mesh may face inwards or outwards. The mesh may cross itself if Solid::of() resolves the
+///              crossings. Triangles without area are allowed if flips of their longest sides can remove them.
+///              Segments, points and unused vertices are left out.
 [[nodiscard]] CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context = {});
 
 }  // namespace blum

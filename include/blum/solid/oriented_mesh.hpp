@@ -24,8 +24,9 @@ struct OrientedMesh {
 ///
 /// @param mesh  closed and manifold: each edge has two triangles. Crossings are not detected. If two shells cross, the
 ///              triangle with the smallest index in each shell decides which shell counts as inside the other.
-/// @throws InvalidMesh if the mesh is not closed and manifold, or has only one side, like a Klein bottle. It is also
-/// thrown if a shell encloses no volume (or a volume that no double represents), or if two shells coincide. Cancelled.
+/// @throws InvalidMesh if the mesh is not closed and manifold, or has only one side, like a Klein bottle. InvalidMesh
+/// is also thrown if a shell encloses no volume (or a volume that no double represents), or if two shells coincide.
+/// Cancelled.
 /// Cost: that of topology(), or twice that if triangles of a shell face different ways.
 [[nodiscard]] OrientedMesh oriented_mesh(const MeshView& mesh, const Context& context = {});
 

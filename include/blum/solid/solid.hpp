@@ -56,8 +56,8 @@ struct Description<SolidShell> {
       Member{"is_reversed", &SolidShell::is_reversed, "", "true if the shell faced into the solid in the input"}};
 };
 
-/// Body of a mesh: a connected part of a polyhedron, or all of a solid with SolidRule::winding. It stores the triangles
-/// of the input that bound the body.
+/// Body of a mesh: a connected part of a polyhedron, or all of a solid with SolidRule::winding. A SolidBody stores the
+/// triangles of the input that bound the body.
 struct SolidBody {
   /// Value of `vertex_of` for a vertex that the input does not have, because triangles crossed there.
   static constexpr std::uint32_t no_vertex = ResolvedMesh::no_vertex;
@@ -75,7 +75,7 @@ struct SolidBody {
 
 /// Surface of a solid as one mesh.
 struct SolidSurface {
-  /// The surface of a polyhedron faces away from the solid. Its triangles are those of the input in their order, with
+  /// The surface of a polyhedron faces away from the solid. The triangles are those of the input in their order, with
   /// the second and third corner of some triangles exchanged. If crossings were resolved, the triangles are those of
   /// ResolvedMesh.
   TriangleMesh mesh;
@@ -142,7 +142,7 @@ class Solid {
   /// Returns the number of triangles that faced against the majority of their shell and were reversed.
   [[nodiscard]] std::size_t reversed_triangles() const;
   /// Returns counts of the defects that were resolved to make the mesh a polyhedron. Returns nullopt if the mesh has no
-  /// defects, or if defects were not resolved. If they were not resolved, reason() gives the cause.
+  /// defects, or if defects were not resolved. If defects were not resolved, reason() gives the cause.
   [[nodiscard]] const std::optional<CrossingCounts>& resolved() const;
   /// SolidRule::winding: returns true if the triangles face inwards as a whole, so that almost no point is inside. The
   /// remedy is to reverse all triangles. The sign of the volume between the triangles and the middle of their box

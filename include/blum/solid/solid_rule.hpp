@@ -11,7 +11,7 @@ namespace blum {
 
 /// Rule that defines a solid, and so the meaning of a certificate.
 enum class SolidRule : std::uint8_t {
-  polyhedron,  ///< Solid that the closed shells of a mesh bound. Its tunnels and voids are known exactly.
+  polyhedron,  ///< Solid that the closed shells of a mesh bound. The tunnels and voids of the solid are known exactly.
   winding,     ///< Points with a winding number above 1/2. Used if the mesh is open, crosses itself or is not manifold.
                ///< Results preserve only the topology of the voxels whose centres are inside.
   voxels       ///< Union of the selected, closed voxels of an image.

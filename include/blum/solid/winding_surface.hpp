@@ -15,13 +15,13 @@ namespace blum {
 /// orientation: no triangle is reversed. If one shell lies in another one and both face the same way, only the outer
 /// shell remains. If the mesh already is this boundary, the function returns the mesh.
 ///
-/// Use this function instead of Solid::of() for meshes that move. It computes neither bodies nor shells nor topology,
+/// Use this function instead of Solid::of() for meshes that move. The function computes no bodies, shells or topology,
 /// and takes a fraction of the time of Solid::of().
 ///
-/// @param mesh  must pass validate(mesh). Its segments and points are left out.
+/// @param mesh  must pass validate(mesh). Segments and points of the mesh are left out.
 /// @param name  name in errors, for example "object 3".
-/// @throws InvalidMesh if the mesh has no triangles, or if they face inwards as a whole. It is also thrown if the mesh
-/// is not closed, or if its crossings cannot be resolved. Cancelled.
+/// @throws InvalidMesh if the mesh has no triangles, or if they face inwards as a whole. InvalidMesh is also thrown if
+/// the mesh is not closed, or if its crossings cannot be resolved. Cancelled.
 /// Cost: about 0.3 microseconds per triangle. If the mesh crosses itself, the cost of resolve_crossings() is added.
 [[nodiscard]] SolidSurface winding_surface(TriangleMesh mesh, const std::string& name, const Context& context = {});
 
