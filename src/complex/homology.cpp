@@ -117,10 +117,10 @@ class Peeling {
 /// A sparse matrix over Z/2 that computes its rank. For example, its columns are sheets, and its rows are the seams at
 /// which they end.
 ///
-/// If a row is in only one remaining column, that column is paired with the row and removed. This repeats until no such
-/// row exists (the surface is closed). Then one column is removed without a row, as unpaired, and pairing continues. No
-/// column that is removed later contains a paired row. So the paired columns are independent, and only the unpaired
-/// columns need elimination. Elimination clears the rows in the order in which they were paired.
+/// If a row is in only one remaining column, that column is paired with the row and removed. Pairing repeats until no
+/// such row exists (the surface is closed). Then one column is removed without a row, as unpaired, and pairing
+/// continues. No column that is removed later contains a paired row. So the paired columns are independent, and only
+/// the unpaired columns need elimination. Elimination clears the rows in the order in which they were paired.
 class SparseMatrix {
  public:
   /// @param columns  the rows of each column, each once.

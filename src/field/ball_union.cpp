@@ -245,7 +245,7 @@ class BlockFiller {
  private:
   using Coordinates = std::array<double, leaf_nodes>;
 
-  /// Fills a block. Its candidates are the balls of the stack with indices from `begin` to the end.
+  /// Fills a block. The block's candidates are the balls of the stack with indices from `begin` to the end.
   void fill(const Block& block, std::size_t begin) {
     if (context_.cancel.stop_requested()) return;
     const std::size_t end = stack_.size();

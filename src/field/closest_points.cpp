@@ -99,8 +99,8 @@ std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3
   const double squared_height = squared_length(height);
   const double third = squared_height > 0 ? std::min(dot(p - a, height) / squared_height, 1.0) : 0.0;
   const double second = dot(p - a, along) / squared - third * foot;
-  // In a narrow triangle, the division by the small height magnifies rounding and can put p beyond a side. Such a point
-  // is treated as one on the side.
+  // In a narrow triangle, the division by the small height magnifies rounding and can put p beyond a side. If p is
+  // beyond a side, it is treated as a point on this side.
   if (!(third > 0)) {
     const double part = part_between(a, corners[1], p);
     return {1 - part, part, 0};
@@ -278,7 +278,7 @@ struct ClosestPointQuery::Data {
   }
 
   /// Returns the batch search for this many queries, or null if there are too few queries to save time. The first call
-  /// that returns a search builds it.
+  /// that returns a search builds this search.
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);
     if (is_prepared_) return queries >= PointSearch::fewest ? search_.get() : nullptr;

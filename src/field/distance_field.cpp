@@ -45,8 +45,8 @@ void invert_signs(const Context& context, Field& field) {
 
 /// Negates the distances of nodes inside. The results are identical for any number of threads.
 /// @param plan   sign plan of this mesh; its method must be Method::crossings or Method::sums.
-/// @param field  unsigned distances of this mesh. Their error is at most 1e-6 of the diagonal of the box around mesh
-/// and grid.
+/// @param field  unsigned distances of this mesh. The error of the distances is at most 1e-6 of the diagonal of the box
+/// around mesh and grid.
 void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& sites, const Context& context,
                    Field& field) {
   if (plan.method == Method::crossings) {
@@ -108,7 +108,7 @@ struct SecondSite {
   SiteId site = SiteId::none();
 };
 
-/// Finds second sites in double precision, one query at a time, in balls of growing radius. It is meant for the few
+/// Finds second sites in double precision, one query at a time, in balls of growing radius. This search is for the few
 /// nodes that the kernels leave unsettled. The mesh, sites and labels must outlive it.
 class SecondSearch {
  public:
@@ -116,7 +116,7 @@ class SecondSearch {
 
   /// Returns the closest site that shares no label with `first`, or none if it is further than `limit`. Among equally
   /// close sites it returns the one with the smallest id.
-  /// @param first_distance  approximate distance of the first site. It determines the first radius.
+  /// @param first_distance  approximate distance of the first site. The first radius follows from this distance.
   [[nodiscard]] SecondSite find(const Vec3d& query, SiteId first, double first_distance, double limit) const;
 
  private:
@@ -168,7 +168,8 @@ SecondSearch::SecondSearch(const MeshView& mesh, const SiteTable& sites, const S
 
 void SecondSearch::offer(const NearestPrimitive& found, const Vec3d& query, const SecondLabels::OfSite& first,
                          SecondSite& best) const {
-  // Corners of the primitive that are not excluded. They form the whole primitive, an edge, a vertex or nothing.
+  // Corners of the primitive that are not excluded. The remaining corners form the whole primitive, an edge, a vertex
+  // or nothing.
   std::array<std::uint32_t, 3> left{};
   std::size_t count = 0;
   bool is_whole = true;

@@ -21,7 +21,7 @@ void check_objects(const FieldOptions& options);
 /// @throws InvalidOption if triangle ids are requested and has_free_parts is true.
 void check_site_ids(const FieldOptions& options, bool has_free_parts);
 
-/// Returns the request for a mesh whose signs are planned. Its result memory is not set yet.
+/// Returns the request for a mesh whose signs are planned. The request's result memory is not set yet.
 [[nodiscard]] FieldRequest make_field_request(const GridSpec& grid, const FieldOptions& options,
                                               const sign::Plan& plan);
 

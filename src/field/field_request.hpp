@@ -10,9 +10,9 @@
 
 namespace blum {
 
-/// Request for a field, and the memory of its result. make_field_request() creates it once. It is passed unchanged to
-/// the tiles of the CPU, or to the CUDA module and its kernels. The module has no other description of a field. Only
-/// the memory is replaced when the CUDA module computes the field in slabs.
+/// Request for a field, and the memory of its result. make_field_request() creates it once. The request is passed
+/// unchanged to the tiles of the CPU, or to the CUDA module and its kernels. The module has no other description of a
+/// field. Only the memory is replaced when the CUDA module computes the field in slabs.
 ///
 /// A new option of fields needs a member here. The struct must be plain data; cuda::module_version must change with its
 /// layout.

@@ -19,9 +19,9 @@ struct CommonUnit {
   double unit = 1;
 };
 
-/// Finds the common unit of spacings: a power of two times the greatest common divisor of their mantissas. It exists
-/// for any three doubles whose exponents differ little enough. Returns false if the multiples do not fit in their
-/// integer type.
+/// Finds the common unit of spacings: a power of two times the greatest common divisor of their mantissas. A common
+/// unit exists for any three doubles whose exponents differ little enough. Returns false if the multiples do not fit in
+/// their integer type.
 bool find_common_unit(const double (&spacing)[3], int used, CommonUnit& common) {
   int lowest_exponent = std::numeric_limits<int>::max();
   int exponents[3] = {};

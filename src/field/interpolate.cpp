@@ -15,8 +15,8 @@ namespace blum {
 namespace {
 
 constexpr std::size_t points_per_range = 4096;
-/// Largest distance beyond the grid's border at which a point still counts as on the border. It covers rounding. Unit:
-/// grid steps times the number of layers.
+/// Largest distance beyond the grid's border at which a point still counts as on the border. This distance covers
+/// rounding. Unit: grid steps times the number of layers.
 constexpr double rounding = 1e-9;
 
 /// The two layers around a coordinate, and its relative position between them, 0 to 1.

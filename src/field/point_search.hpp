@@ -26,8 +26,8 @@ class PointSearch {
 
   /// Smallest number of queries for which answering them together saves time.
   static constexpr std::size_t fewest = 1024;
-  /// Returns true if it pays to build a PointSearch for this many queries. There must be at least 4096, and at least as
-  /// many as the mesh has faces (docs/performance.md).
+  /// Returns true if it pays to build a PointSearch for this many queries. There must be at least 4096 queries, and at
+  /// least as many queries as faces of the mesh (docs/performance.md).
   [[nodiscard]] static bool is_worth_building(std::size_t queries, std::size_t faces);
   /// Returns true if it pays to use an existing PointSearch for this many queries.
   [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);

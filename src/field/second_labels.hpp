@@ -34,7 +34,7 @@ class SecondLabels {
 
   /// Returns true if each vertex has a different label.
   [[nodiscard]] bool is_by_vertex() const { return of_vertex_.empty(); }
-  /// Returns the label of a vertex. It is below the number of vertices.
+  /// Returns the label of a vertex. Labels are below the number of vertices.
   [[nodiscard]] std::uint32_t of_vertex(std::uint32_t vertex) const {
     return of_vertex_.empty() ? vertex : of_vertex_[vertex];
   }

@@ -36,8 +36,9 @@ struct CornerCase {
   std::array<std::uint8_t, 8> patch_of{};  ///< Per voxel: index of its patch; none if the voxel is selected.
   /// Per patch: sum of its voxels' directions from the corner, (+-1, +-1, +-1) each.
   std::array<std::array<std::int8_t, 3>, 8> way{};
-  /// Double edges: bit e stands for the edge from the corner in the positive direction of axis e. It is set if exactly
-  /// two voxels around the edge are selected, and they are diagonally opposite. The surface passes such an edge twice.
+  /// Double edges: bit e stands for the edge from the corner in the positive direction of axis e. A bit is set if
+  /// exactly two voxels around the edge are selected, and they are diagonally opposite. The surface passes such an edge
+  /// twice.
   std::uint8_t double_edges = 0;
   /// True if exactly two voxels are selected, and they are opposite across the corner. The patch is then a ring around
   /// the corner.
@@ -148,8 +149,8 @@ using Place = std::array<std::int64_t, 3>;
 struct NetCorner {
   std::uint32_t x = 0;
   std::uint8_t selected = 0;  ///< Bits of the selected voxels; see CornerCase.
-  /// Bit c is set if a face has a vertex in its middle. It is perpendicular to axis c, on the corner's positive side
-  /// along the other axes.
+  /// Bit c is set if a face has a vertex in its middle. The face is perpendicular to axis c, on the corner's positive
+  /// side along the other axes.
   std::uint8_t middles = 0;
   std::uint32_t first_vertex = 0;
   std::uint32_t first_polygon = 0;
@@ -293,8 +294,8 @@ class NetBuilder {
                              [](const NetCorner& corner, std::int64_t x) { return std::int64_t{corner.x} < x; });
   }
 
-  /// Returns true if a face separates a selected voxel from an unselected one. The face is perpendicular to axis c. It
-  /// lies on the positive side of the corner along both other axes.
+  /// Returns true if a face separates a selected voxel from an unselected one. The face is perpendicular to axis c. The
+  /// face lies on the positive side of the corner along both other axes.
   static bool has_face(const NetCorner& corner, unsigned c) {
     const unsigned low = 7U ^ 1U << c;
     return (corner.selected >> low & 1U) != (corner.selected >> 7U & 1U);
@@ -416,8 +417,8 @@ class NetBuilder {
     put(net, vertex, tip, box);
   }
 
-  /// Positions the two vertices at the middle of a double edge. They lie in the plane perpendicular to the edge, on
-  /// opposite sides of it.
+  /// Positions the two vertices at the middle of a double edge. The vertices lie in the plane perpendicular to the
+  /// edge, on opposite sides of the edge.
   static void put_edge(SurfaceNet& net, const NetCorner& corner, const Vec3d& p, unsigned edge) {
     const unsigned a = (edge + 1) % 3;
     const unsigned b = (edge + 2) % 3;

@@ -25,7 +25,7 @@ struct CubeEdge {
   std::uint8_t step = 0;  ///< 1 to 7
 };
 
-/// Triangles that separate the corners inside from those outside. They face the corners outside.
+/// Triangles that separate the corners inside from those outside. The triangles face the corners outside.
 struct CubeCase {
   std::uint8_t triangle_count = 0;
   std::array<std::array<CubeEdge, 3>, 12> triangles{};  ///< at most two per tetrahedron
@@ -62,7 +62,7 @@ constexpr CubeEdge edge_of(const Pair& pair) {
   return {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>((pair[0] | pair[1]) ^ from)};
 }
 
-/// Adds the triangle through the midpoints of three edges. It faces the outside corner of the first edge.
+/// Adds the triangle through the midpoints of three edges. The triangle faces the outside corner of the first edge.
 constexpr void add_triangle(CubeCase& cube, const Pair& a, const Pair& b, const Pair& c) {
   const Corner3 p = doubled_middle(a[0], a[1]);
   const Corner3 q = doubled_middle(b[0], b[1]);

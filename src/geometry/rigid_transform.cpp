@@ -17,7 +17,7 @@ Mat3 closest_rotation(const Mat3& matrix) {
         "vertices instead");
   }
   for (int round = 0; round < most_rounds && place.rotation_error() > close_enough; ++round) {
-    // Takes the mean of the matrix and its inverse transpose. This is Newton's method for the polar decomposition.
+    // Takes the mean of the matrix and its inverse transpose, as in Newton's method for the polar decomposition.
     const double volume = dot(cross(c[0], c[1]), c[2]);
     const Mat3 other{{cross(c[1], c[2]) / volume, cross(c[2], c[0]) / volume, cross(c[0], c[1]) / volume}};
     for (std::size_t k = 0; k < 3; ++k) c[k] = (c[k] + other.columns[k]) / 2;

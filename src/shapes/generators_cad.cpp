@@ -167,7 +167,7 @@ TriangleMesh make_gear(const GearOptions& options) {
   require_positive(options.root_radius, "root_radius");
   require_positive(options.tip_radius, "tip_radius");
   require(options.tip_radius > options.root_radius, "tip_radius", "above root_radius", options.tip_radius);
-  // Each half of an arc at the root is a chord. Its middle is closer to the centre than the root radius.
+  // Each half of an arc at the root is a chord. The middle of a chord is closer to the centre than the root radius.
   const double inner_radius = options.root_radius * std::cos(0.175 * detail::pi / options.teeth);
   require(options.bore_radius >= 0 && options.bore_radius < inner_radius, "bore_radius", "0 to below root_radius",
           options.bore_radius);

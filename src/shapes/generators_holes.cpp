@@ -20,7 +20,7 @@ class PrismComplex {
  public:
   /// Adds an axis-aligned box.
   void add_box(const Vec3d& lower, const Vec3d& upper);
-  /// Adds the prism between two triangles. Both are counter-clockwise if seen from the side of `top`.
+  /// Adds the prism between two triangles. Both triangles are counter-clockwise if seen from the side of `top`.
   void add_prism(const std::array<Vec3d, 3>& base, const std::array<Vec3d, 3>& top);
   /// Returns the closed boundary, facing outwards. Cost: O(n log n).
   [[nodiscard]] TriangleMesh boundary() const;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t nobody = 0xffffffffU;
 
 /// Returns the body of each shell. Each outer shell (of even depth) gets the next body number; each void gets the body
-/// of the shell around it. Returns nullopt if the shell around a void is not an outer shell. This may happen if shells
+/// of the shell around it. Returns nullopt if the shell around a void is not an outer shell, which may happen if shells
 /// cross or coincide.
 std::optional<std::vector<std::uint32_t>> body_of_shells(const std::vector<Shell>& shells) {
   std::vector<std::uint32_t> body(shells.size(), nobody);

@@ -15,7 +15,7 @@ namespace blum::cpu {
 
 inline constexpr std::uint32_t no_index = 0xffffffff;
 
-/// Connectivity of a mesh. It depends only on the mesh's indices, so it stays valid while the mesh deforms.
+/// Connectivity of a mesh. Connectivity depends only on the mesh's indices, so it stays valid while the mesh deforms.
 struct Adjacency {
   /// Vertices that a triangle, segment or point uses, ascending.
   std::vector<std::uint32_t> named_vertices;

@@ -36,8 +36,8 @@ namespace blum::detail::HWY_NAMESPACE {
 namespace {
 
 /// Arithmetic of squared distances, in int32 or double. In a column with both kinds of voxels, the cost f of a selected
-/// voxel is stored as ~f (int32) or -f (double). For a selected row, all costs are flipped again. Then costs of voxels
-/// of the row's own kind are positive, and those of the other kind negative.
+/// voxel is stored as ~f (int32) or -f (double). For a selected row, all costs are flipped again. After flipping, costs
+/// of voxels of the row's own kind are positive, and those of the other kind negative.
 template <class T>
 struct Costs;
 
@@ -379,8 +379,8 @@ class Sweep {
   template <class DT, class VT>
   HWY_INLINE void store(DT dt, VT value, hn::TFromD<DT>* out) const {
     if (lanes_ == hn::Lanes(dt)) {
-      // Results are written past the caches if they fill whole cache lines. Such lines are not read again soon, and
-      // their old content need not be read.
+      // Results are written past the caches if they fill whole cache lines. Cache lines of results are not read again
+      // soon, and their old content need not be read.
       constexpr bool whole_line = kFinal && hn::MaxLanes(dt) * sizeof(*out) == 64;
       if (whole_line && reinterpret_cast<std::uintptr_t>(out) % 64 == 0) {
         hn::Stream(value, dt, out);

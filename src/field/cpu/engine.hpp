@@ -38,7 +38,7 @@ class SecondSites {
 
   [[nodiscard]] const SiteRecords& records() const { return records_; }
   [[nodiscard]] const ClusterForest& forest() const { return forest_; }
-  /// Returns a job whose field and request are not set. It is valid until the next build().
+  /// Returns a job whose field and request are not set. The job is valid until the next build().
   [[nodiscard]] SecondJob job() const;
 
  private:

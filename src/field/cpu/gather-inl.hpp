@@ -27,9 +27,9 @@ HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, U
 }
 
 /// Tests boxes around parts of the surface against a tile. Let p0 be a known surface point, x a point of the tile and p
-/// one of the box. The box is dropped if p0 is closer to x than p for all x and p. This holds if |x - p|^2 - |x - p0|^2
-/// is positive for all x and p. The minimum is separable by axis. Along an axis the difference is linear in x and
-/// convex in p. So the minimum is at an end of the tile, with p as close to that end as the box allows.
+/// one of the box. The box is dropped if p0 is closer to x than p for all x and p. That is, |x - p|^2 - |x - p0|^2 is
+/// positive for all x and p. The minimum is separable by axis. Along an axis the difference is linear in x and convex
+/// in p. So the minimum is at an end of the tile, with p as close to that end as the box allows.
 struct TileTest {
   Vec low, high, low_p0, high_p0;
   V tolerance;
@@ -243,7 +243,7 @@ HWY_INLINE void find_records(const Test& test, const FieldJob& job, const std::v
   }
 }
 
-/// Appends the records of the found clusters that may be closest somewhere in the tile. They are sorted later.
+/// Appends the records of the found clusters that may be closest somewhere in the tile. The records are sorted later.
 template <Kind kind, class Test>
 HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
                                std::vector<detail::KeyedIndex>& out) {

@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Surface points near a box, used to drop sites that are further away. The first one is the closest to the box's
-/// centre; the others come from neighbouring boxes.
+/// Surface points near a box, used to drop sites that are further away. The first point is the closest to the box's
+/// centre; the other points come from neighbouring boxes.
 struct Dominators {
   static constexpr std::size_t most = 4;
   std::array<Vec3f, most> point{};

@@ -318,8 +318,8 @@ HWY_INLINE void finish_pass(const LeafPass<with_sides>& pass, std::size_t index,
   }
 }
 
-/// Data that a box of 8 x 8 x 8 nodes passes to its leaves. They are prepared candidates, and bits that mark those of
-/// each leaf.
+/// Data that a box of 8 x 8 x 8 nodes passes to its leaves. These data are prepared candidates, and bits that mark the
+/// candidates of each leaf.
 struct LeafInput {
   const std::array<LeafColumns, 3>& columns;
   std::array<ChildBits, kind_count>& bits;

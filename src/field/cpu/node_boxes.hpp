@@ -9,8 +9,8 @@
 
 namespace blum::cpu {
 
-/// Length by which boxes are widened (normalised units). It covers all rounding in the tests that cull sites against
-/// boxes.
+/// Length by which boxes are widened (normalised units). This length covers all rounding in the tests that cull sites
+/// against boxes.
 inline constexpr float box_slack = 3e-6F;
 
 /// Box around nodes: centre and half-sizes in the normalised frame.

@@ -40,8 +40,8 @@ void prefetch(const Vec3d& query) {
   hwy::Prefetch(&query.z);  // the end of the query may be in the next cache line
 }
 
-/// Returns a grid of two nodes per side. Its box is the mesh's box, widened on each side by a quarter of the longest
-/// side. Most queries are expected to lie within it.
+/// Returns a grid of two nodes per side. The grid's box is the mesh's box, widened on each side by a quarter of the
+/// longest side. Most queries are expected to lie within it.
 GridSpec frame_grid(const Box3& bounds) {
   const Vec3d size = bounds.size();
   const double margin = 0.25 * std::max({size.x, size.y, size.z});

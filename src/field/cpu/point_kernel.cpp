@@ -157,7 +157,7 @@ struct ClosestThree {
   }
 };
 
-/// Computes one cell. It owns no results; it holds data that the recursion passes along.
+/// Computes one cell. PointWorker owns no results; it holds data that the recursion passes along.
 class PointWorker {
  public:
   PointWorker(const PointJob& job, PointScratch& scratch)

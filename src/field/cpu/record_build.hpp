@@ -73,7 +73,8 @@ using kernels::negligible_length;
 using kernels::store;
 using kernels::unit;
 
-/// Data of each triangle, written when its record is built. They are read when the records of its edges are built.
+/// Data of each triangle, written when its record is built. The data are read when the records of the triangle's edges
+/// are built.
 struct FaceFacts {
   /// Unit normals; zero for triangles too flat for a reliable normal.
   std::vector<Vec3d> normals;

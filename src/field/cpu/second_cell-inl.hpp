@@ -260,9 +260,9 @@ HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const Second
   }
 }
 
-/// Upper bound on the squared distances of nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit. It has the
-/// form of a squared distance from a point, as Domination requires. For each slope there is a valid limit. The bound is
-/// tight if the slope approximates the gradient of the distances.
+/// Upper bound on the squared distances of nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit. The bound
+/// has the form of a squared distance from a point, as Domination requires. For each slope there is a valid limit. The
+/// bound is tight if the slope approximates the gradient of the distances.
 struct DistanceBound {
   Vec3f slope;
   float limit = 0;
@@ -353,7 +353,7 @@ inline GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group,
   return {(low + high) * 0.5F, length(high - low) * 0.50001F + box_slack};
 }
 
-/// First sites of a leaf, and its second sites found so far. They are stored in the cell.
+/// First sites of a leaf, and its second sites found so far. The sites are stored in the cell.
 struct SecondLeaf {
   /// Labels of the first sites, filled when needed.
   alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
@@ -378,7 +378,7 @@ struct SecondLeaf {
 };
 
 /// Evaluates candidates at the nodes of a leaf. If a candidate is at least as close as some node's best one, its
-/// distances are kept and examined later. This is rare, except at nodes whose first site is the candidate.
+/// distances are kept and examined later. Such candidates are rare, except at nodes whose first site is the candidate.
 struct SecondPass : LeafEvaluation<SecondPass, false> {
   const SecondLeaf& leaf;
   std::size_t first_node;

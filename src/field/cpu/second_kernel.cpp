@@ -20,7 +20,7 @@ constexpr std::int64_t leaf_size = 4;
 constexpr std::size_t many_links = 32;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
-/// Computes one tile. It owns no results; it holds data that the recursion passes along.
+/// Computes one tile. SecondWorker owns no results; it holds data that the recursion passes along.
 class SecondWorker {
  public:
   SecondWorker(const SecondJob& job, SecondScratch& scratch)
@@ -146,8 +146,8 @@ class SecondWorker {
     return out;
   }
 
-  /// Returns bounds for a child of a box. They come from the sites closest to the child's centre, one per lane, that
-  /// the tests found. If these do not suffice, it returns the parent's bounds.
+  /// Returns bounds for a child of a box. The bounds come from the sites closest to the child's centre, one per lane,
+  /// that the tests found. If these sites do not suffice, the function returns the parent's bounds.
   [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest,
                                        std::size_t child, const Vec3f& center, const Bounds& parent) const {
     alignas(64) std::array<float, lanes> squared;

@@ -16,12 +16,12 @@ namespace blum::cpu {
 /// Input of all tiles of the second order, and the memory for their results.
 struct SecondJob {
   /// Sites that may be second, as records without reaches. Beyond a site's reach, some surface point is closer, but
-  /// this point may be excluded in the second order. Its request is unused, except for the grid.
+  /// this point may be excluded in the second order. The job's request is unused, except for the grid.
   FieldJob field;
   SecondRequest request;
   /// Labels of every site. The planes that bound a record's domain come from sites with the same labels only. If
-  /// `links` is set, they come from all neighbours. Then the links of the first site's vertices are evaluated in
-  /// addition.
+  /// `links` is set, they come from all neighbours. In this case, the links of the first site's vertices are evaluated
+  /// in addition.
   std::span<const SecondLabels::OfSite> labels;
   const SecondLinks* links = nullptr;
   /// For each label l, the labels that occur together with l on some site: others[first_other[l] .. first_other[l +

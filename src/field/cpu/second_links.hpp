@@ -31,7 +31,7 @@ struct LinkSegment {
 ///
 /// The second order excludes every site that touches a vertex of the first site, which leaves a hole in the surface.
 /// Planes from excluded sites bound the domains of the sites along this hole. So the sites along the hole must be
-/// evaluated without such planes. They lie in the links of the first site's vertices.
+/// evaluated without such planes. The sites along the hole lie in the links of the first site's vertices.
 struct SecondLinks {
   /// First the segments of all edges, in their order, then all vertices, as points.
   Buffer<LinkSegment> segments;
@@ -50,7 +50,7 @@ struct SecondLinks {
   }
 };
 
-/// Builds the entries. They depend only on connectivity, so they stay valid while the mesh deforms.
+/// Builds the entries. Entries depend only on connectivity, so they stay valid while the mesh deforms.
 void build_link_entries(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         const Context& context, SecondLinks& out);
 /// Builds the segments.

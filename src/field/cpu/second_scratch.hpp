@@ -13,7 +13,7 @@
 namespace blum::cpu {
 
 /// Box of up to 16^3 nodes, stored leaf after leaf. The index of node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k +
-/// 64 (a + 4 b + 16 c). Its nodes are also grouped by first site.
+/// 64 (a + 4 b + 16 c). The nodes of a cell are also grouped by first site.
 struct SecondCell {
   static constexpr std::int64_t side = 16;
   static constexpr std::size_t row = 16;
@@ -45,8 +45,8 @@ struct SecondCell {
   std::array<Group, nodes> groups;
   std::size_t group_count = 0;
   std::array<std::uint16_t, 8192> table;  ///< Hash table of groups. An entry is the group's index + 1.
-  /// Nodes that have a first site, group after group. They are followed by indices of a node that does not exist, so
-  /// that whole vectors can be read.
+  /// Nodes that have a first site, group after group. Indices of a node that does not exist follow, so that whole
+  /// vectors can be read.
   alignas(64) std::array<std::uint32_t, nodes + padding> order{};
 };
 
@@ -67,8 +67,8 @@ class PlaceList {
     std::iota(places_.begin(), places_.begin() + records.count(), 0U);
     finish(records.count());
   }
-  /// Returns the memory for the indices. It is written before finish() sets their number; up to `padding` indices may
-  /// be written at a time.
+  /// Returns the memory for the indices. The caller writes indices before finish() sets their number; up to `padding`
+  /// indices may be written at a time.
   [[nodiscard]] std::uint32_t* places() { return places_.data(); }
   [[nodiscard]] const std::uint32_t* places() const { return places_.data(); }
   /// Sets the number of indices, and makes the padding readable.

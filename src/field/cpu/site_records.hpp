@@ -40,8 +40,8 @@ struct BoxArrays {
   void resize(std::size_t new_count);
 };
 
-/// Double cone of each cluster, about an axis. It contains every direction, from any site of the cluster, in which this
-/// site can be closest. If the sine is one and the cosine zero, the cone is the whole space.
+/// Double cone of each cluster, about an axis. The cone contains every direction, from any site of the cluster, in
+/// which this site can be closest. If the sine is one and the cosine zero, the cone is the whole space.
 struct ConeArrays {
   std::array<Buffer<float>, 3> axis;
   Buffer<float> cosine;

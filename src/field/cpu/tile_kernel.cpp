@@ -29,7 +29,7 @@ bool is_free_of_surface(float distance_at_center, const Vec3f& half) {
   return distance_at_center > length(half) * 1.0001F + box_slack;
 }
 
-/// Computes one tile. It owns no results; it holds data that the recursion passes along.
+/// Computes one tile. TileWorker owns no results; it holds data that the recursion passes along.
 class TileWorker {
  public:
   TileWorker(const FieldJob& job, TileScratch& scratch)

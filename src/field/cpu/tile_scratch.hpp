@@ -11,8 +11,8 @@
 
 namespace blum::cpu {
 
-/// Records of one kind that may be closest somewhere in a box. They are in ascending order of site id, so that ties go
-/// to the smaller id. After finish(), whole vectors may be read past the end.
+/// Records of one kind that may be closest somewhere in a box. Records are in ascending order of site id, so that ties
+/// go to the smaller id. After finish(), whole vectors may be read past the end.
 class RecordList {
  public:
   static constexpr std::size_t padding = 16;
@@ -84,7 +84,7 @@ class LeafColumns {
   std::size_t stride_ = 0;
 };
 
-/// Results of a box of up to 16^3 nodes. They are buffered so that they can be written to the field as whole cache
+/// Results of a box of up to 16^3 nodes. Results are buffered so that they can be written to the field as whole cache
 /// lines.
 struct BoxOutput {
   static constexpr std::int64_t side = 16;

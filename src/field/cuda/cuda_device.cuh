@@ -22,7 +22,7 @@
 
 namespace blum::cuda {
 
-/// Memory of the current device. It grows and never shrinks, so that later frames allocate nothing.
+/// Memory of the current device. The memory grows and never shrinks, so that later frames allocate nothing.
 template <class T>
 class CudaArray {
   static_assert(std::is_trivially_copyable_v<T>);

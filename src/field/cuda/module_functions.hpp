@@ -16,7 +16,7 @@
 namespace blum::cuda {
 
 /// Functions of the module. Exceptions are turned into a Status. Platform is CudaPlatform, or in the tests a platform
-/// that runs on the host. It must have these members:
+/// that runs on the host. A platform must have these members:
 ///
 ///   `Device` launches kernels.
 ///   `Queue` owns a Device and the stream on which it queues work. Members: device(), enter(stream), leave(), queued(),

@@ -10,8 +10,8 @@
 #include "field/field_request.hpp"
 #include "field/image_request.hpp"
 
-// The module is a separate shared library. It is loaded when a CUDA device is first requested, so that the same binary
-// also runs on machines without CUDA. No exception leaves its functions.
+// The module is a separate shared library. The module is loaded when a CUDA device is first requested, so that the same
+// binary also runs on machines without CUDA. No exception leaves the module's functions.
 namespace blum::cuda {
 
 /// Must be increased with every change of this file, or of the types that are passed to the module: FieldRequest,
@@ -51,8 +51,8 @@ struct Module {
   Status (*compute)(void* engine, const MeshView* mesh, const FieldRequest* request, bool* is_signed,
                     Call* call) = nullptr;
   /// Counterparts of the two functions above for a mesh and a field in the device's memory. The function
-  /// compute_there() queues its work on a stream and does not wait for it. It finds all requested signs, by winding
-  /// numbers.
+  /// compute_there() queues its work on a stream and does not wait for it. The function compute_there() finds all
+  /// requested signs by winding numbers.
   Status (*set_connectivity_there)(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) = nullptr;
   Status (*compute_there)(void* engine, const DeviceArrayView* vertices, const FieldRequest* request, void* stream,
                           Call* call) = nullptr;

@@ -214,8 +214,8 @@ struct ProjectedDirection {
       y = v.y / across * scale;
       z = v.z / across * scale;
     } else if (scale > 0) {
-      // The vertex lies on the ray itself. It is treated as if the ray were shifted towards larger y and, by less,
-      // larger z, as for crossings.
+      // The vertex lies on the ray itself. The vertex is treated as if the ray were shifted towards larger y and, by
+      // less, larger z, as for crossings.
       weight = 0;
       y = -scale;
     }
@@ -245,8 +245,8 @@ class BoundaryTerms {
   }
 
   /// Returns a bound on the gradient of an edge's term at all points within a distance of a node, apart from jumps at
-  /// strips. It is infinite if the edge may be that close. The winding number's gradient is the Biot-Savart field of
-  /// the boundary.
+  /// strips. The bound is infinite if the edge may be within this distance. The winding number's gradient is the
+  /// Biot-Savart field of the boundary.
   /// @param reach  the distance, mesh units.
   [[nodiscard]] BLUM_HD double gradient_bound(std::uint32_t index, const Vec3d& node, double reach) const {
     const BoundaryEdge edge = edges_[index];

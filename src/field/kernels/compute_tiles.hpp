@@ -101,9 +101,9 @@ struct alignas(16) PackedRecord {
 };
 
 /// Computes a field, with one thread block per tile of 8^3 nodes. The block's warps search the trees for sites that may
-/// be closest to a node of the tile, and collect their records. They share one stack of entries. Then each warp
-/// processes one leaf of 4^3 nodes. It drops records that cannot be closest in the leaf, and evaluates the others at
-/// two nodes per lane.
+/// be closest to a node of the tile, and collect their records. The warps share one stack of entries. Then each warp
+/// processes one leaf of 4^3 nodes. The warp drops records that cannot be closest in the leaf, and evaluates the other
+/// records at two nodes per lane.
 ///
 /// If the list of records is full, its records are evaluated before the search continues. So no list can overflow. The
 /// result does not depend on the order in which sites are found.

@@ -40,8 +40,8 @@ struct DeviceMesh {
   }
 };
 
-/// Connectivity of a mesh. It depends only on the mesh's indices, so it stays valid while the mesh deforms. Edges have
-/// the same numbers as in SiteTable.
+/// Connectivity of a mesh. Connectivity depends only on the mesh's indices, so it stays valid while the mesh deforms.
+/// Edges have the same numbers as in SiteTable.
 struct ConnectivityView {
   const Segment* edges = nullptr;  ///< smaller vertex first, sorted
   /// Two triangles of each edge, further ones are left out. no_index fills missing entries.

@@ -8,8 +8,8 @@
 
 namespace blum::kernels {
 
-/// Length by which boxes are widened (normalised units). It covers all rounding in the tests that cull sites against
-/// boxes.
+/// Length by which boxes are widened (normalised units). This length covers all rounding in the tests that cull sites
+/// against boxes.
 inline constexpr float box_slack = 3e-6F;
 
 /// Box around nodes: centre and half-sizes in the normalised frame.
@@ -20,7 +20,7 @@ struct CenteredBox {
   [[nodiscard]] BLUM_HD CenteredBox widened() const { return {center, half + Vec3f{box_slack, box_slack, box_slack}}; }
 };
 
-/// Surface points near a box, used to drop sites that are further away everywhere in it. The first one is closest to
+/// Surface points near a box, used to drop sites that are further away everywhere in it. The first point is closest to
 /// the box's centre; points may repeat.
 struct Dominators {
   static constexpr int count = 4;
@@ -129,7 +129,7 @@ BLUM_HD inline bool face_matters(const Record& record, const CenteredBox& box, c
   return domination.keeps(n * height, height * height, domination.squared_half);
 }
 
-/// Returns true if a site may be the closest one somewhere in a box. Its record must not be dead.
+/// Returns true if a site may be the closest one somewhere in a box. The record of the site must not be dead.
 /// @param box  must be widened by box_slack.
 BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const CenteredBox& box,
                                  const Domination& domination) {
@@ -139,9 +139,9 @@ BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const
 }
 
 /// Tests boxes around parts of the surface against a tile. Let p0 be a known surface point, x a point of the tile and p
-/// one of the box. The box is dropped if p0 is closer to x than p for all x and p. This holds if |x - p|^2 - |x - p0|^2
-/// is positive for all x and p. The minimum is separable by axis. Along an axis the difference is linear in x and
-/// convex in p. So the minimum is at an end of the tile, with p as close to that end as the box allows.
+/// one of the box. The box is dropped if p0 is closer to x than p for all x and p. That is, |x - p|^2 - |x - p0|^2 is
+/// positive for all x and p. The minimum is separable by axis. Along an axis the difference is linear in x and convex
+/// in p. So the minimum is at an end of the tile, with p as close to that end as the box allows.
 struct TileTest {
   Vec3f low, high, low_p0, high_p0;
   float tolerance = 0;

@@ -100,7 +100,7 @@ class EmulatedBlock {
   }
 };
 
-/// Memory of a device. Here it is the host's memory.
+/// Memory of a device. The emulated device uses the host's memory.
 template <class T>
 class EmulatedArray {
  public:

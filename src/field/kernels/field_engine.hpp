@@ -175,7 +175,7 @@ class FieldEngine {
     build();
   }
 
-  /// Computes the field of a mesh. Its connectivity must be the current one.
+  /// Computes the field of a mesh. The mesh must have the current connectivity.
   /// @param request     request with host memory. The sites are written as feature ids.
   /// @param is_stopped  callable: returns true to stop early.
   /// @param report      callable: receives the fraction done.

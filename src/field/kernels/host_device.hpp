@@ -8,8 +8,8 @@
 
 #include "blum/core/vec3.hpp"
 
-// Kernel functions also run on the host: the tests run them through EmulatedDevice (emulated_device.hpp). They may use
-// constexpr functions of the standard library and of Vec3 (nvcc --expt-relaxed-constexpr).
+// Kernel functions also run on the host: the tests run them through EmulatedDevice (emulated_device.hpp). Kernel
+// functions may use constexpr functions of the standard library and of Vec3 (nvcc --expt-relaxed-constexpr).
 #if defined(__CUDACC__)
 #define BLUM_HD __host__ __device__
 #define BLUM_NOINLINE __noinline__
@@ -106,8 +106,9 @@ BLUM_HD inline float float_of(std::uint32_t bits) {
 #endif
 }
 
-// Sums and products that are rounded separately. They are used where results must be equal on all devices, so the
-// compiler must not fuse them. On the host, no flag with which kernels are tested allows fused operations.
+// Sums and products that are rounded separately. These functions are used if results must be equal on all devices, so
+// the compiler must not fuse their operations. On the host, no flag with which kernels are tested allows fused
+// operations.
 BLUM_HD inline double rounded_sum(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dadd_rn(a, b);

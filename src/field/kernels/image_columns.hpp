@@ -25,8 +25,8 @@ struct ColumnPass {
   std::uint32_t* site;
   /// One 32-bit slot per voxel. The slots use the memory of the distances, so their type is float.
   float* slots;
-  // The following two arrays have one entry per band and column. They describe the first run (rows of one kind) in the
-  // band. This run may continue the last run of the previous band.
+  // The following two arrays have one entry per band and column. The two arrays describe the first run (rows of one
+  // kind) in the band. This run may continue the last run of the previous band.
   std::uint32_t* bottom;  ///< Slot of the run's lowest entry in the band.
   std::uint32_t* change;  ///< Row at which the run ends.
 
@@ -144,12 +144,12 @@ class Column {
 };
 
 // A column pass (along y or z) processes the rows r of a column. For each r it finds the row s that minimises cost(s) +
-// w (s - r)^2. This is the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Among equally good rows s the
-// lowest wins.
+// w (s - r)^2. The minimum over s is the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Among equally good
+// rows s the lowest wins.
 //
-// A run consists of consecutive rows of one kind (selected or not). The voxel next to a run is of the other kind. It
-// has cost 0 and hides everything beyond it from the run's rows. So each run has a separate envelope: of its own rows,
-// and of the voxels next to its ends ("walls", which need no memory). A signed transform thus computes inside and
+// A run consists of consecutive rows of one kind (selected or not). The voxel next to a run is of the other kind. That
+// voxel has cost 0 and hides everything beyond it from the run's rows. So each run has a separate envelope: of its own
+// rows, and of the voxels next to its ends ("walls", which need no memory). A signed transform thus computes inside and
 // outside in one pass, with the work and memory of an unsigned pass. In an unsigned transform, voxels in runs of
 // selected voxels are their own sites.
 //
@@ -165,7 +165,7 @@ class Column {
 // noise and sparse points of 128^3 voxels.) Most of these writes are combined in the cache.
 //
 // Entries of a run that begins at row a are in slots a, a + 1, and so on. The last slot of a run (or of its part in a
-// band) may not be an entry. It then contains the slot after the last entry.
+// band) may not be an entry. If it is not an entry, it contains the slot after the last entry.
 
 /// Builds the envelopes of one band of a column.
 template <class Costs, bool along_z>
@@ -274,8 +274,8 @@ struct BuildEnvelopes {
 };
 
 /// Joins the envelopes of runs that extend over several bands. One thread per column processes one band after the
-/// other. It drops hidden entries at the upper end of the envelope so far, and at the lower end of the next band's
-/// envelope.
+/// other. The thread drops hidden entries at the upper end of the envelope so far, and at the lower end of the next
+/// band's envelope.
 template <class Costs, bool along_z>
 struct MergeBands {
   ColumnPass<Costs> pass;
@@ -374,8 +374,8 @@ struct AssignSites {
    private:
     using Cursor = typename Column<Costs, along_z>::Cursor;
 
-    /// Starts with the last rows of a run. Their end is `end`. The first entry is the wall there, or else the entry
-    /// that is lowest at row end - 1.
+    /// Starts with the last rows of a run, which end before row `end`. The first entry is the wall at `end`, or else
+    /// the entry that is lowest at row end - 1.
     BLUM_HD void start(std::uint32_t end, bool kind, bool has_wall) {
       if (column_.is_settled(kind)) return;
       cursor_ = {column_.top(end), band_};

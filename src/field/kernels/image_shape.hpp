@@ -66,8 +66,8 @@ struct ImageShape {
   }
 };
 
-/// Parabola over the rows of a column. Its height at a row is the squared distance to `site`: `cost` + weight * (row -
-/// this row)^2.
+/// Parabola over the rows of a column. The parabola's height at a row is the squared distance to `site`: `cost` +
+/// weight * (row - this row)^2.
 template <class Value>
 struct Parabola {
   std::uint32_t row = 0;

@@ -182,8 +182,8 @@ struct TransformRows {
 };
 
 /// Computes the distances from the sites that the passes found, and applies the band. Reads 4 bytes per voxel, writes 4
-/// (8 beyond the band). This moves less memory than storing distances in each pass would. The passes can therefore use
-/// the memory of the distances as working memory.
+/// (8 beyond the band). Computing distances at the end moves less memory than storing distances in each pass would. The
+/// passes can therefore use the memory of the distances as working memory.
 template <class Costs>
 struct WriteDistances {
   ImageShape shape;
@@ -266,8 +266,8 @@ class ImageTransform {
         },
         detail::make_voxel_test<T>(selection));
   }
-  /// Returns the mask, for callers that fill it themselves. It consists of rows of 32-bit words; bits beyond a row's
-  /// end must be 0.
+  /// Returns the mask, for callers that fill it themselves. The mask consists of rows of 32-bit words; bits beyond a
+  /// row's end must be 0.
   [[nodiscard]] std::uint32_t* mask() { return mask_.data(); }
   [[nodiscard]] std::size_t mask_words() const { return shape_.mask_words(); }
 

@@ -55,8 +55,8 @@ struct FaceColumns {
   static constexpr int is_sliver = 14;  ///< if not 0, the columns are SliverColumns (device only)
 };
 
-/// Sliver: a face too flat for barycentric coordinates in float32. Stores its three corners. It is evaluated in double,
-/// as a triangle with its border.
+/// Sliver: a face too flat for barycentric coordinates in float32. Stores its three corners. A sliver is evaluated in
+/// double, as a triangle with its border.
 struct SliverColumns {
   static constexpr int corners = 0;  // 3 x 3 columns
 };

@@ -53,8 +53,8 @@ struct SlicePoint {
   double x, y;
 };
 
-/// Returns the point where an edge meets a slice. It is computed from the lower to the upper end, so that all triangles
-/// at the edge find the same point.
+/// Returns the point where an edge meets a slice. The point is computed from the lower to the upper end, so that all
+/// triangles at the edge find the same point.
 BLUM_HD inline SlicePoint edge_point(const Vec3d& lower, const Vec3d& upper, double z) {
   const double t = (z - lower.z) / (upper.z - lower.z);
   return {lower.x + rounded_product(t, upper.x - lower.x), lower.y + rounded_product(t, upper.y - lower.y)};
@@ -103,8 +103,8 @@ struct SliceCut {
   [[nodiscard]] BLUM_HD Cuts<Index> rows(Index size) const {
     return {smaller(p.y, q.y), larger(p.y, q.y), size};
   }
-  /// Returns the index of the first node of a row behind its crossing. It is a whole number and may lie outside of the
-  /// grid.
+  /// Returns the index of the first node of a row behind its crossing. The index is a whole number and may lie outside
+  /// of the grid.
   [[nodiscard]] BLUM_HD double node_behind(double row) const {
     const double t = (row - p.y) / (q.y - p.y);
     return floor(p.x + rounded_product(t, q.x - p.x)) + 1;

@@ -131,7 +131,7 @@ Surroundings surroundings(const MeshView& mesh, const Part& part, const WindingN
 }
 
 /// Returns true if a part certainly faces into the solid. The winding numbers of parts that face outwards are positive.
-/// Those of flat sheets are close to 0.
+/// The winding numbers of flat sheets are close to 0.
 bool faces_inwards(const Part& part, const Surroundings& around) {
   if (!part.is_consistent || !surrounds_a_volume(part)) return false;
   if (part.is_closed && has_negative_volume(part)) return around.mean < -0.1;

@@ -20,8 +20,8 @@
 
 namespace blum::sign {
 
-/// Rule for the signs of a mesh. It depends only on the mesh and the sign mode, so grids, devices and queries always
-/// agree.
+/// Rule for the signs of a mesh. A plan depends only on the mesh and the sign mode, so grids, devices and queries
+/// always agree.
 struct Plan {
   SignRule rule = SignRule::none;
   std::string reason;  ///< one sentence
@@ -35,7 +35,7 @@ struct Plan {
   /// inside.
   int level = 0;
   /// True if no two triangles touch or cross except neighbours, all shells face away from the solid, and every triangle
-  /// has a normal. Then pseudonormals give the same signs. False if this was not checked.
+  /// has a normal. In this case, pseudonormals give the same signs. False if the conditions were not checked.
   bool is_simple = false;
 };
 

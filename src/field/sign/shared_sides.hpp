@@ -10,10 +10,11 @@
 
 namespace blum::sign {
 
-/// Point that is not on the surface. It is inside if its winding number is above 1/2.
+/// Point that is not on the surface. The point is inside if its winding number is above 1/2.
 struct SidedPoint {
   Vec3d at;
-  double distance = 0;  ///< distance from the surface, above 0. Its error is covered by the `slack` of decide_sides().
+  double distance = 0;  ///< distance from the surface, above 0. The `slack` of decide_sides() covers the error of this
+                        ///< distance.
   bool is_inside = false;
 };
 
@@ -41,7 +42,7 @@ struct NumberedPoint {
   double number = 0;
 };
 
-/// Finds rough winding numbers of points. They are shared as in decide_sides().
+/// Finds rough winding numbers of points. Points share winding numbers as in decide_sides().
 void find_rough_numbers(const WindingNumber& winding, std::span<NumberedPoint> points, double slack);
 
 }  // namespace blum::sign

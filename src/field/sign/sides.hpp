@@ -18,13 +18,13 @@ namespace blum::sign {
 
 /// Finds sides according to a sign plan. Sides copies the data that it needs, so the mesh may be destroyed.
 ///
-/// With whole winding numbers, a query's number is that of the side of the surface that the query faces. The reason:
+/// If winding numbers are whole, a query has the winding number of the side of the surface that it faces. The reason:
 /// nothing lies between the query and its closest point. Triangles that no other triangle touches are therefore
 /// collected in patches, connected across edges of exactly two triangles. In front of a patch the winding number is the
 /// same everywhere; behind it, it is greater by one. The winding number in front is computed once per patch. The
-/// pseudonormal of a query's closest site decides which side of the patch the query faces. The winding number of some
-/// queries must be evaluated directly. These are queries closest to a triangle that others touch or cross, or to a
-/// patch with an uncertain number.
+/// pseudonormal of a query's closest site decides which side of the patch the query faces. The winding number must be
+/// evaluated directly for two kinds of queries. Their closest triangle touches or crosses other triangles, or belongs
+/// to a patch with an uncertain winding number.
 class Sides {
  public:
   /// @param bvh  search tree of this mesh, used to find points in front of patches.

@@ -238,7 +238,7 @@ constexpr std::size_t blocks_per_range = 64;
 constexpr double part_spread = 0.2;
 constexpr double component_spread = 0.4;
 /// If one step may change the winding number by more, parts would contain little more than one node each. Such a block
-/// joins no component. It is evaluated in boxes that are halved repeatedly; most of these lie further from the
+/// joins no component, but is evaluated in boxes that are halved repeatedly. Most of these boxes lie further from the
 /// boundary.
 constexpr float change_to_ask_at = 0.05F;
 /// Longer than any path within a block, so that it does not limit the parts.

@@ -19,7 +19,7 @@ struct alignas(64) MovingBlock {
 };
 
 /// Returns a bit for each box of a block that may touch `box` at some time. A bit is 0 if, along some axis, the box is
-/// on the same side of `box` at the start and at the end. It is then on this side at all times.
+/// on the same side of `box` at the start and at the end. The box is then on this side at all times.
 [[nodiscard]] unsigned touching(const MovingBlock& block, const MovingBoxF& box);
 
 }  // namespace blum

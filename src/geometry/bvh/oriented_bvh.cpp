@@ -63,7 +63,8 @@ class Extent {
 /// Smallest length of a sum of normals. Shorter sums have lost digits, because their squares underflow.
 constexpr double least_normal = 1e-140;
 
-/// Returns two directions orthogonal to `normal` and to each other. The first one is as close to `along` as possible.
+/// Returns two directions orthogonal to `normal` and to each other. The first direction is as close to `along` as
+/// possible.
 std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   const Vec3d flat = along - normal * dot(normal, along);
   const double size = squared_length(flat);
@@ -221,8 +222,8 @@ struct OrientedBvh::Data {
     return level == 0 ? leaves.size() : tree.levels[static_cast<std::size_t>(level) - 1].size();
   }
   [[nodiscard]] NodeRef top() const { return {0, tree.top()}; }
-  /// Returns the box of a node. It is stored in its parent: blocks of level k contain the boxes of nodes of level k -
-  /// 1.
+  /// Returns the box of a node. A node's box is stored in its parent: blocks of level k contain the boxes of nodes of
+  /// level k - 1.
   [[nodiscard]] OrientedBox box(const NodeRef& node) const {
     if (node.level == tree.top()) return root;
     return tree.levels[static_cast<std::size_t>(node.level) + 1][node.index / lanes].box(node.index % lanes);

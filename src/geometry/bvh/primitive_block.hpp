@@ -45,8 +45,8 @@ struct SiteCandidate {
   }
 };
 
-/// Computes distances from a point to eight primitives, borders included. They are accurate to about 1e-12 of the
-/// lengths involved. For slivers they are lower bounds.
+/// Computes distances from a point to eight primitives, borders included. The distances are accurate to about 1e-12 of
+/// the lengths involved. For slivers, they are lower bounds.
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]);
 
 /// Returns a bit for each triangle of a block that a ray may cross between its origin and t = end. The bit is 0 for

@@ -25,7 +25,7 @@ struct Cut {
 };
 
 /// Vertices of a mesh and points constructed from them, with exact predicates. Coordinates of points are quotients of
-/// integers. They are also stored rounded to the nearest double, which decides nearly all predicates.
+/// integers. Coordinates are also stored rounded to the nearest double, which decides nearly all predicates.
 class ExactSpace {
  public:
   /// @param vertices  coordinates of magnitude at most 2. The coordinates must outlive this object. Used vertices must

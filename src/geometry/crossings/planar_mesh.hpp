@@ -25,8 +25,8 @@ class PlanarMesh {
   /// Inserts a point.
   /// @return  false if another point is at the same position.
   [[nodiscard]] bool insert(PointId point);
-  /// Makes a segment a fixed edge. No point may lie on it, and no fixed edge may cross it. Its ends must have been
-  /// inserted.
+  /// Makes a segment a fixed edge. No point may lie on it, and no fixed edge may cross it. The ends of the segment must
+  /// have been inserted.
   /// @return  false if a point lies on the segment, or a fixed edge crosses it.
   [[nodiscard]] bool insert_segment(PointId from_point, PointId to_point);
   /// Flips edges to enlarge the smallest angles, as far as rounding allows.

@@ -69,7 +69,7 @@ Contact contact_over_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const 
 
 /// Returns the contact along a ray: the ray in which the wedge of `a` passes through the plane of `b`. The ray starts
 /// at the common corner a[0] = b[0].
-/// @param side  sides of b's plane on which a[1] and a[2] lie. They must differ.
+/// @param side  sides of b's plane on which a[1] and a[2] lie. The two sides must differ.
 Contact contact_along_ray(const Points& a, const Points& b, int side_1, int side_2) {
   if (side_1 == 0 || side_2 == 0) {
     const Projection plane(b);

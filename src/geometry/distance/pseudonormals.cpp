@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t grain = 4096;
 
-/// Returns the angle between two vectors. It is accurate for all angles.
+/// Returns the angle between two vectors. The result is accurate for all angles.
 double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }

@@ -50,7 +50,8 @@ struct SiteProjection::Data {
   Data(const MeshView& mesh, const SiteTable& sites, const Context& context);
   void add_edges(const MeshView& mesh, const SiteTable& sites);
 
-  /// The following functions return true if the query lies in a site's domain. In this case they set its foot.
+  /// The following functions return true if the query lies in a site's domain. If they return true, they set the
+  /// query's foot on the site.
   [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;

@@ -69,8 +69,8 @@ bool in_triangle(const Vec3d& p, const std::array<Vec3d, 3>& t) {
 bool segments_meet(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   if (on_segment(c, a, b) || on_segment(d, a, b) || on_segment(a, c, d) || on_segment(b, c, d)) return true;
   if (orient3d(a, b, c, d) != 0) return false;
-  // No end of a segment lies on the other segment, so they meet only if they cross. This is decided in a projection
-  // along an axis in which the plane keeps an area.
+  // No end of a segment lies on the other segment, so they meet only if they cross. A projection along an axis in which
+  // the plane keeps an area decides if they cross.
   for (std::size_t dropped = 0; dropped < 3; ++dropped) {
     const int first = turn(dropped, a, b, c) * turn(dropped, a, b, d);
     const int second = turn(dropped, c, d, a) * turn(dropped, c, d, b);
@@ -97,8 +97,8 @@ bool have_a_corner_in_common(const std::array<Vec3d, 3>& a, const std::array<Vec
   return std::any_of(a.begin(), a.end(), [&](const Vec3d& p) { return std::find(b.begin(), b.end(), p) != b.end(); });
 }
 
-/// Returns true if two triangles share a point. They may be degenerate to segments or points. The result is exact if
-/// all coordinates are 0 or of magnitude 1e-80 to 1e100.
+/// Returns true if two triangles share a point. The triangles may be degenerate to segments or points. The result is
+/// exact if all coordinates are 0 or of magnitude 1e-80 to 1e100.
 bool meet(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   if (have_a_corner_in_common(a, b)) return true;
   Hull small(a);

@@ -387,8 +387,8 @@ class PatchGrower {
     visit_beside(seed, is_long, [&](std::uint32_t f) { out.push_back(f); });
     return out;
   }
-  /// Returns a chain of needles with common long edges, three on either side of a face. They form strips of a cylinder
-  /// or cone. Returns an empty list if the other faces are not needles.
+  /// Returns a chain of needles with common long edges, three on either side of a face. Such needles form strips of a
+  /// cylinder or cone. Returns an empty list if the other faces are not needles.
   [[nodiscard]] std::vector<std::uint32_t> chain(std::uint32_t seed) {
     ++face_stamp_;
     face_mark_[seed] = face_stamp_;

@@ -15,7 +15,7 @@ namespace blum::detail {
 /// Value of `capacity` for expansions without a limit.
 inline constexpr std::size_t unbounded = 0;
 
-/// Number stored as a sum of non-overlapping doubles, in ascending order of magnitude (Shewchuk 1997). It is exact
+/// Number stored as a sum of non-overlapping doubles, in ascending order of magnitude (Shewchuk 1997). The sum is exact
 /// unless something overflows or falls below the normal range. `capacity` is the number of doubles that can be added,
 /// or `unbounded`. A product of two doubles counts as two, a product of three as four.
 template <std::size_t capacity>

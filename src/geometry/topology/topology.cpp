@@ -83,7 +83,7 @@ class Fans {
   }
   [[nodiscard]] bool is_first(std::uint32_t corner) { return sets_.find(corner) == corner; }
 
-  /// Returns the number of closed chains of boundary edges. They are followed around fans. Destroys the fans.
+  /// Returns the number of closed chains of boundary edges. Chains are followed around fans. Destroys the fans.
   [[nodiscard]] std::size_t count_boundary_loops(const EdgeUses& edges) {
     std::vector<std::uint32_t> ends;
     for (std::size_t e = 0; e + 1 < edges.start.size(); ++e) {

@@ -215,8 +215,8 @@ class VertexTable {
  public:
   explicit VertexTable(std::span<const Vec3d> vertices) : vertices_(vertices), slots_(1024) {}
 
-  /// Returns the first vertex that was entered at this vertex's position. This is the vertex itself if the position is
-  /// new.
+  /// Returns the first vertex that was entered at this vertex's position. If the position is new, returns the vertex
+  /// itself.
   std::uint32_t enter(std::uint32_t vertex) {
     if (2 * used_ >= slots_.size()) grow();
     const std::uint64_t h = hash(vertices_[vertex]);

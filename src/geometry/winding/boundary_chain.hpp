@@ -14,15 +14,15 @@
 
 namespace blum {
 
-/// Boundary chain of a surface: the sum of the directed edges of all triangles, with multiplicities. It is empty for a
-/// closed surface. For an open surface, it consists of the rims of holes. Edges are combined if their ends have the
-/// same positions.
+/// Boundary chain of a surface: the sum of the directed edges of all triangles, with multiplicities. The chain is empty
+/// for a closed surface. For an open surface, it consists of the rims of holes. Edges are combined if their ends have
+/// the same positions.
 ///
 /// If no triangle lies between two points, their winding numbers differ only by the solid angles of this chain. The
 /// winding number's gradient is the chain's Biot-Savart field over 4 pi. The field is the sum of dl x R / R^3, with R
-/// from the query to the edge. It is summed as a vector. So the two banks of a crack cancel, and far away also the two
-/// sides of a small hole. The sum neglects the extent of clusters and of the query's box. The error is bounded with the
-/// kernel's derivative, which is at most 2 / R^3.
+/// from the query to the edge. The field is summed as a vector. So the two banks of a crack cancel, and far away also
+/// the two sides of a small hole. The sum neglects the extent of clusters and of the query's box. The error is bounded
+/// with the kernel's derivative, which is at most 2 / R^3.
 class BoundaryChain {
  public:
   BoundaryChain() = default;

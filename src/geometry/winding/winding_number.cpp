@@ -38,8 +38,8 @@ class BoundaryCone {
 /// Upper bound on the rounding error of an angle's terms.
 constexpr double rounding_of_cone = 1e-14;
 
-/// Returns a point near the middle of the boundary. It is offset by odd amounts, so that nothing in a mesh is likely to
-/// be aligned with it.
+/// Returns a point near the middle of the boundary. The point is offset by odd amounts, so that nothing in a mesh is
+/// likely to be aligned with it.
 Vec3d apex_of(std::span<const BoundaryChain::Edge> edges) {
   Box3 box;
   for (const BoundaryChain::Edge& edge : edges) {

@@ -52,7 +52,7 @@ void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolera
 void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double beta, FarSum& sum, OpenLanes& others);
 
 /// Sum of half solid angles that needs no atan2 for each term. Every lane contains a product of complex numbers whose
-/// arguments are half the solid angles. It also counts how often the sum of arguments left (-pi, pi].
+/// arguments are half the solid angles. The sum also counts how often the arguments' total left (-pi, pi].
 struct alignas(64) SolidAngleSum {
   double re[lanes];
   double im[lanes];

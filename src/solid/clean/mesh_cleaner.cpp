@@ -27,10 +27,10 @@ ContactTriangle for_contact(const ShrinkingSurface& mesh, const Triangle& t) {
   return {{mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])}, t};
 }
 
-/// Returns true if a plane through an edge of `a`, at a right angle to `a`, certainly separates the two triangles. Then
-/// they share at most ends of that edge. The plane's function det(edge, n, x - corner) is 0 at both ends of the edge
-/// for every vector n. So rounding of n does not matter. This test decides nearly all coplanar neighbours, for which
-/// exact determinants would take long.
+/// Returns true if a plane through an edge of `a`, at a right angle to `a`, certainly separates the two triangles. In
+/// this case, the triangles share at most ends of that edge. The plane's function det(edge, n, x - corner) is 0 at both
+/// ends of the edge for every vector n. So rounding of n does not matter. This test decides nearly all coplanar
+/// neighbours, for which exact determinants would take long.
 bool lies_beyond_an_edge(const ContactTriangle& a, const ContactTriangle& b) {
   constexpr double rounding = 1e-14;
   const Vec3d normal = cross(a.points[1] - a.points[0], a.points[2] - a.points[0]);
@@ -162,8 +162,8 @@ class Fans {
   /// Returns an upper bound on the distance of the fans in z: the height of the slab that contains both.
   [[nodiscard]] double slab() const { return (highest_ - lowest_) + height_error * extent_; }
 
-  /// Returns a smaller upper bound on the distance of the fans in z. It is evaluated at the apex and at crossings of
-  /// edges. Between these points both fans are linear.
+  /// Returns a smaller upper bound on the distance of the fans in z. The distance is evaluated at the apex and at
+  /// crossings of edges. Between these points both fans are linear.
   [[nodiscard]] double gap() const {
     double most = closed_ ? gap_at_apex() : 0;
     const std::size_t last = points_.size() - 1;
@@ -334,8 +334,8 @@ bool StepCheck::is_clear(const Triangle& triangle) const {
   });
 }
 
-/// Returns true if the inner triangle at a border edge turns about that edge past the outer triangle. This would
-/// exchange inside and outside there.
+/// Returns true if the inner triangle at a border edge turns about that edge past the outer triangle. Such a turn would
+/// exchange inside and outside at the edge.
 bool StepCheck::turns_over_a_neighbour(const BorderEdge& edge) const {
   const Vec3d& a = mesh_.point(edge.a);
   const Vec3d& b = mesh_.point(edge.b);
@@ -454,8 +454,8 @@ double CollapseSearch::bound_along_crease(double limit) const {
   return best;
 }
 
-/// Returns an upper bound on how far the surface moves if the vertex is contracted onto ring corner `onto`. It may
-/// exceed the budget.
+/// Returns an upper bound on how far the surface moves if the vertex is contracted onto ring corner `onto`. The bound
+/// may exceed the budget.
 double CollapseSearch::bound(std::size_t onto, double budget) {
   const std::size_t count = around_.size();
   rotated_.resize(count);

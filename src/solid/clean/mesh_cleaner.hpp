@@ -82,9 +82,9 @@ class StepCheck {
   /// @throws Cancelled.
   StepCheck(const ShrinkingSurface& mesh, const Context& context);
 
-  /// Returns true if the solid keeps its topology in a step. The test is exact. New triangles must have areas. They
-  /// must not cross or touch each other or the remaining triangles, except at common corners and edges. No other shell
-  /// and no neighbouring triangle may lie between old and new triangles.
+  /// Returns true if the solid keeps its topology in a step. The test is exact. New triangles must have areas. New
+  /// triangles must not cross or touch each other or the remaining triangles, except at common corners and edges. No
+  /// other shell and no neighbouring triangle may lie between old and new triangles.
   [[nodiscard]] bool passes(const SurfaceStep& step);
 
   /// Updates the tree after the given triangles of the mesh changed or were removed.
@@ -138,9 +138,9 @@ class CollapseSearch {
   CollapseSearch(const ShrinkingSurface& mesh, std::span<const double> deviations, double tolerance)
       : mesh_(mesh), deviations_(deviations), tolerance_(tolerance) {}
 
-  /// Returns the collapses of a vertex that keep the deviation within the tolerance and the shapes acceptable. They are
-  /// in ascending order of cost, then target. Checks neither the link condition nor contacts of triangles. The list and
-  /// star() are valid until the next call.
+  /// Returns the collapses of a vertex that keep the deviation within the tolerance and the shapes acceptable.
+  /// Collapses are in ascending order of cost, then target. Checks neither the link condition nor contacts of
+  /// triangles. The list and star() are valid until the next call.
   [[nodiscard]] std::span<const VertexCollapse> find(std::uint32_t v);
   [[nodiscard]] const Star& star() const { return star_; }
 

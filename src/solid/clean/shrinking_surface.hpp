@@ -26,8 +26,7 @@ struct EdgePair {
   std::uint32_t apex_left = 0, apex_right = 0;
 };
 
-/// A closed, oriented, manifold surface. Its triangles keep their indices when vertices are removed and edges are
-/// flipped.
+/// A closed, oriented, manifold surface. Triangles keep their indices when vertices are removed and edges are flipped.
 class ShrinkingSurface {
  public:
   /// @param mesh  closed, oriented and manifold. Its vertices must stay valid and unchanged.
@@ -56,7 +55,7 @@ class ShrinkingSurface {
   /// Performs the collapse that may_collapse() allows.
   /// @param v  the centre of the star.
   void collapse(std::uint32_t v, const Star& star, std::size_t onto);
-  /// Flips an edge, so that it joins the two apexes. They must not be joined by an edge before. `left` becomes
+  /// Flips an edge, so that it joins the two apexes. Before the flip, no edge may join the apexes. `left` becomes
   /// apex_left, a, apex_right; `right` becomes apex_right, b, apex_left.
   void flip(const EdgePair& edge);
 

@@ -28,8 +28,8 @@ struct SplitBox {
 };
 
 /// Splits boxes that fail. A box passes if no component of the solid in its six faces has a hole, and spheres bound all
-/// components in the box. Then components in each rectangle that it shares with a neighbouring box have no hole either.
-/// The box also passes if its faces are divided into these rectangles.
+/// components in the box. If a box passes, components in each rectangle that it shares with a neighbouring box have no
+/// hole, either. The box also passes if its faces are divided into these rectangles.
 class BoxSplitter {
  public:
   /// @param finer  boxes that pass are also split if they are too large for these boxes: see body_cells(). Must stay
@@ -55,7 +55,7 @@ class BoxSplitter {
     Vec3d middle;
     double cuts = 0;  ///< number of cuts needed to open the hole: its shift across the box divided by its width
   };
-  /// An edge of the box, also called side. Its intervals are its parts inside the solid.
+  /// An edge of the box, also called side. The intervals of a side are its parts inside the solid.
   struct Side {
     std::size_t axis = 0;
     std::size_t corner = 0;  ///< index of the edge's lower end

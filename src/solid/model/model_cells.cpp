@@ -251,8 +251,8 @@ class Assembly {
     }
   }
 
-  /// Sets the ends of interval `interval` on a segment along an axis, from `low` to the coordinate `high`. Its middle
-  /// becomes the witness. `crossings` are the triangles that cross the segment, from below.
+  /// Sets the ends of interval `interval` on a segment along an axis, from `low` to the coordinate `high`. The middle
+  /// of the interval becomes the witness. `crossings` are the triangles that cross the segment, from below.
   void set_interval(std::size_t axis, const Vec3d& low, double high, bool begins_inside,
                     std::span<const std::uint32_t> crossings, std::uint32_t interval) {
     const auto end_at = [&](std::size_t k) {

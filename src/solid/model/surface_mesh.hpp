@@ -32,8 +32,8 @@ namespace blum::detail {
 /// @throws InvalidMesh if a coordinate becomes too small for exact predicates.
 [[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, int exponent);
 
-/// A closed, manifold mesh of one or several bodies. It faces outwards and does not touch itself. The given mesh must
-/// outlive this object.
+/// A closed, manifold mesh of one or several bodies. The mesh faces outwards and does not touch itself. The given mesh
+/// must outlive this object.
 class SurfaceMesh {
  public:
   /// Makes the mesh of one body.
@@ -52,7 +52,7 @@ class SurfaceMesh {
     }
   }
 
-  /// Returns the vertex with the largest x-coordinate. It belongs to the outer shell of a body.
+  /// Returns the vertex with the largest x-coordinate. This vertex belongs to the outer shell of a body.
   [[nodiscard]] static std::uint32_t outermost_vertex(std::span<const Vec3d> vertices) {
     const auto at =
         std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; });
