@@ -51,7 +51,8 @@ ImageInfo tubes() {
           with_spacing({count_parameter("nodes", "nodes along each axis", 3, 1, 50),
                         count_parameter("pitch", "voxels from node to node", 20, 6, 500),
                         {"radius", "radius of the tubes, in voxels, at most pitch / 2 - 2", 4, 1, 248, false},
-                        count_parameter("labelled", "1: tubes along x, y, z have labels 1, 2, 3; 0: all 1", 0, 0, 1)}),
+                        count_parameter("labelled", "1: tubes along x, y, z have labels 1, 2, 3; 0: all have label 1",
+                                        0, 0, 1)}),
           [](const ParameterValues& p) {
             return make_tube_image(
                 {whole(p, "nodes"), whole(p, "pitch"), p.at("radius"), spacing(p), whole(p, "labelled") == 1});
@@ -74,7 +75,7 @@ ImageInfo balls() {
 }
 
 ImageInfo noise() {
-  return {"noise_image", "single random voxels",
+  return {"noise_image", "random voxels",
           with_spacing({count_parameter("size", "voxels along each side", 64, 1, 1024),
                         {"density", "fraction of voxels that are set", 0.01, 0, 1, false},
                         {"seed", "seed of the random numbers", 1, 0, 4294967295.0, true}}),

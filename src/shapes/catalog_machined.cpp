@@ -34,7 +34,7 @@ ShapeInfo void_cube() {
 
 ShapeInfo nested_shells() {
   return {"nested_shells",
-          "spheres in each other: solid, void, solid, ...",
+          "nested spheres that bound, from outside to inside, solid, void, solid, ...",
           {count_parameter("shells", "number of shells", 3, 1, 1000), length_parameter("radius", "largest radius", 1),
            count_parameter("frequency", "fineness of the shells, each of 20 frequency^2 triangles", 8, 1, 1581)},
           [](const ShapeParameters& p) {
@@ -53,7 +53,7 @@ ShapeInfo bodies() {
       "separate equal bodies on a cubic lattice",
       {count_parameter("count", "number of bodies", 27, 1, 4000000), length_parameter("size", "size of each body", 0.5),
        length_parameter("spacing", "distance between centres, above size", 1),
-       count_parameter("frequency", "0: boxes; else spheres of 20 frequency^2 triangles", 0, 0, 1581)},
+       count_parameter("frequency", "0: bodies are boxes; otherwise spheres of 20 frequency^2 triangles", 0, 0, 1581)},
       [](const ShapeParameters& p) {
         const Values v{p};
         return make_bodies({v.whole("count"), v.real("size"), v.real("spacing"), v.whole("frequency")});
@@ -65,7 +65,7 @@ ShapeInfo wedge() {
   return {"wedge",
           "a triangular prism with one sharp edge",
           {{"angle", "angle between the faces that meet in the sharp edge, in degrees", 30, 1e-6, 179.999, false},
-           length_parameter("length", "length of those faces", 1),
+           length_parameter("length", "length of the faces that meet in the sharp edge", 1),
            length_parameter("width", "length of the sharp edge", 1)},
           [](const ShapeParameters& p) {
             const Values v{p};

@@ -80,10 +80,10 @@ ShapeInfo torus_knot() {
           {count_parameter("p", "turns around the axis; no common factor with q", 2, 1, 20),
            count_parameter("q", "turns around the tube of the torus", 3, 1, 20),
            length_parameter("ring_radius", "radius of the torus", 1),
-           length_parameter("wind_radius", "radius of its tube, below ring_radius", 0.4),
+           length_parameter("wind_radius", "radius of the torus's tube, below ring_radius", 0.4),
            length_parameter("tube_radius", "radius of the knot's own tube", 0.15),
            count_parameter("curve_segments", "segments along the knot", 400, 16, 1000000),
-           count_parameter("tube_segments", "segments around its tube", 24, 3, 1000000)},
+           count_parameter("tube_segments", "segments around the knot's tube", 24, 3, 1000000)},
           [](const ShapeParameters& p) {
             const Values v{p};
             return make_torus_knot({v.whole("p"), v.whole("q"), v.real("ring_radius"), v.real("wind_radius"),
@@ -113,7 +113,7 @@ ShapeInfo linked_tori() {
 
 ShapeInfo ridged_rod() {
   return {"ridged_rod",
-          "a rod whose radius waves along its length",
+          "a rod whose radius varies along its length like a cosine",
           {length_parameter("length", "length", 4), length_parameter("radius", "mean radius", 0.5),
            length_or_zero("ridge_height", "half the difference between ridge and groove, below radius", 0.1),
            count_parameter("ridges", "ridges along the length", 12, 0, 100000),

@@ -169,7 +169,7 @@ struct Description<MedialCounts> {
   static constexpr std::string_view doc = "Numbers of the parts of a medial axis";
   static constexpr std::tuple members{
       Member{"vertices", &MedialCounts::vertices, "", "points of the axis"},
-      Member{"triangles", &MedialCounts::triangles, "", "triangles of its sheets"},
+      Member{"triangles", &MedialCounts::triangles, "", "triangles of all sheets"},
       Member{"sheets", &MedialCounts::sheets, "", "sets of triangles that are connected without crossing a seam"},
       Member{"curve_edges", &MedialCounts::curve_edges, "", "edges without triangles"},
       Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of exactly one triangle"},

@@ -119,7 +119,7 @@ struct Description<FieldOptions> {
              "rule for the sign, which is negative inside; 'auto': by orientation if the mesh is closed and does not "
              "cross itself, otherwise by winding numbers"},
       Member{"band", &FieldOptions::band, "mesh units",
-             "half-width of a band around the surface; nodes beyond it get the distance +-band and no site",
+             "half-width of a band around the surface; nodes beyond the band get the distance +-band and no site",
              Range::positive()},
       Member{"site_ids", &FieldOptions::site_ids, "",
              "numbering of sites: features (vertices, edges and faces) or triangles", Range{}, of_meshes},

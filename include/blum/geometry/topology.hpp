@@ -64,7 +64,7 @@ struct Description<Shell> {
       Member{"bounds", &Shell::bounds, "mesh units", "bounding box"},
       Member{"signed_volume", &Shell::signed_volume, "cubic mesh units",
              "enclosed volume, positive if the shell faces away from its interior"},
-      Member{"area", &Shell::area, "square mesh units", "area of its triangles"},
+      Member{"area", &Shell::area, "square mesh units", "area of the shell's triangles"},
       Member{"euler_characteristic", &Shell::euler_characteristic, "",
              "vertices - edges + faces, with a vertex counted once for each of its fans"},
       Member{"genus", &Shell::genus, "", "number of handles"},
@@ -97,7 +97,7 @@ struct Topology {
   std::size_t inconsistent_edges = 0;    ///< edges with two triangles that both traverse them in the same direction
   std::size_t degenerate_triangles = 0;  ///< triangles with the same vertex at two corners, or with corners exactly on
                                          ///< one line
-  std::size_t duplicate_triangles = 0;   ///< triangles with the same three vertices as an earlier one, in any order
+  std::size_t duplicate_triangles = 0;  ///< triangles with the same three vertices as an earlier triangle, in any order
 
   bool closed = false;          ///< a triangle exists, and every edge of a triangle has exactly two triangles
   bool oriented = false;        ///< no edge with two triangles is traversed in the same direction by both
@@ -145,7 +145,7 @@ struct Description<Topology> {
       Member{"degenerate_triangles", &Topology::degenerate_triangles, "",
              "triangles that use a vertex twice, or whose corners lie exactly on one line"},
       Member{"duplicate_triangles", &Topology::duplicate_triangles, "",
-             "triangles with the same three vertices as an earlier one"},
+             "triangles with the same three vertices as an earlier triangle"},
       Member{"closed", &Topology::closed, "", "true if every edge of a triangle has exactly two triangles"},
       Member{"oriented", &Topology::oriented, "", "true if no edge is inconsistent"},
       Member{"manifold", &Topology::manifold, "", "true if no edge or vertex is non-manifold"},

@@ -50,7 +50,7 @@ struct Description<SolidShell> {
              "body that this shell bounds, as its outer shell or as the boundary of a void"},
       Member{"depth", &SolidShell::depth, "",
              "number of other shells that contain this shell; if the number is odd, this shell bounds a void"},
-      Member{"parent", &SolidShell::parent, "", "innermost other shell that contains this one"},
+      Member{"parent", &SolidShell::parent, "", "innermost other shell that contains this shell"},
       Member{"genus", &SolidShell::genus, "", "number of handles"},
       Member{"volume", &SolidShell::volume, "cubic mesh units", "enclosed volume, > 0"},
       Member{"is_reversed", &SolidShell::is_reversed, "", "true if the shell faced into the solid in the input"}};
