@@ -9,7 +9,7 @@ namespace blum {
 
 enum class DeviceKind : std::uint8_t {
   cpu,
-  automatic,  ///< the first CUDA device if one works, else the CPU
+  automatic,  ///< the first CUDA device if it works, otherwise the CPU
   cuda
 };
 

@@ -24,8 +24,8 @@ enum class WarningCode : std::uint8_t {
   other_vertices,      ///< vertices were merged, or vertices at equal positions are separate: the mesh may not be the
                        ///< intended one
   left_out,            ///< parts of an input or a result were left out
-  open_mesh,           ///< a mesh has a boundary although a closed one is expected
-  facing,              ///< triangles face different ways, or into the solid
+  open_mesh,           ///< a mesh has a boundary, although a closed mesh is expected
+  facing,              ///< triangles have inconsistent orientations, or face into the solid
   nothing_inside,      ///< no node of a field is inside
   nothing_found,       ///< none of the requested objects was found
   other_topology,      ///< the topology of a result differs from that of its solid

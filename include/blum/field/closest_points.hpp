@@ -59,7 +59,7 @@ struct ClosestPoint {
 
 /// Returns the weights of the corners of `found.triangle`, in their order. The closest point is the weighted mean of
 /// the corners. Each weight is at least 0, and their sum is 1 within rounding. If the closest point is a corner, the
-/// weight of that corner is 1 and the others are 0.
+/// weight of that corner is 1, and the other weights are 0.
 /// @param mesh  the mesh on which `found` is the closest point.
 /// @return      nullopt if the closest point lies on no triangle.
 [[nodiscard]] std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found);

@@ -31,7 +31,7 @@ struct Description<DeviceInfo> {
 /// All CUDA devices that Blum can use.
 struct CudaDevices {
   std::vector<DeviceInfo> devices;
-  std::string reason;  ///< reason in one sentence if there are no devices; else empty
+  std::string reason;  ///< reason in one sentence if there are no devices; otherwise empty
 };
 
 template <>

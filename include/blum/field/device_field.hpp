@@ -39,7 +39,7 @@ class DeviceFieldSolver {
 
   /// Copies the triangles, segments and points of a mesh and finds its edges. Only the number of vertices is used, not
   /// their positions. Call this function again when the connectivity changes. set_connectivity() waits for the device.
-  /// @throws InvalidMesh if the mesh has no sites or too many, or an index is out of range.
+  /// @throws InvalidMesh if the mesh has no sites or too many sites, or if an index is out of range.
   /// @throws InvalidOption for an element type that is not supported, a missing pointer, or SiteIds::triangles for a
   /// mesh with segments or points.
   /// @throws OutOfMemory, DeviceError.

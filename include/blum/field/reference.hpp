@@ -37,7 +37,7 @@ class BruteForce {
   /// Returns the closest of the sites that share no label with the first site (see share_label()). Fields of order 2
   /// use this rule.
   /// @param first   the closest site of the query.
-  /// @param labels  one label per vertex of the mesh. If the list is empty, each vertex has a label of its own.
+  /// @param labels  one label per vertex of the mesh. If the list is empty, each vertex has a different label.
   /// Cost: O(sites).
   [[nodiscard]] std::optional<Nearest> second(const Vec3d& query, SiteId first,
                                               std::span<const std::uint32_t> labels = {}) const;

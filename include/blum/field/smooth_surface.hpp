@@ -42,7 +42,7 @@ struct SmoothSurface {
                                   ///< vertex's move
 };
 
-/// Computes a smooth, closed surface between the selected voxels of an image and the others.
+/// Computes a smooth, closed surface between the selected voxels of an image and all other voxels.
 ///
 /// - The centre of each selected voxel is inside. The centre of every other voxel, and all space beyond the image, is
 ///   outside.
@@ -64,8 +64,8 @@ struct SmoothSurface {
 /// @throws InvalidGrid if the spacing is too small relative to the coordinates of the origin. With such a spacing,
 /// rounded coordinates make the surface cross itself.
 /// @throws OutOfMemory, Cancelled.
-/// Cost: O(voxels / 64), and about 5 microseconds of one core and 300 bytes for each face between a selected voxel and
-/// another one.
+/// Cost: O(voxels / 64), and about 5 microseconds of one core and 300 bytes for each face between a selected and an
+/// unselected voxel.
 /// Method: docs/theory/smooth-surfaces.md.
 [[nodiscard]] SmoothSurface smooth_surface(const VoxelImageView& image, const LabelSelection& selection = {},
                                            const SmoothSurfaceOptions& options = {}, const Context& context = {});

@@ -54,7 +54,7 @@ struct RayCrossing {
   TriangleId triangle;
   std::array<double, 3> weights{};  ///< barycentric weights of the triangle's corners, in their order; their sum is 1
   int side = 0;                     ///< 1 if the ray crosses towards the side that the triangle faces, -1 if it crosses
-                                    ///< the other way
+                                    ///< towards the opposite side
   bool on_border = false;           ///< true if the ray meets an edge or corner of the triangle; then it also meets the
                                     ///< triangles that share this edge or corner
 };

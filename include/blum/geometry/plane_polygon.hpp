@@ -33,8 +33,8 @@ struct PlanePolygon {
 /// Returns twice the area of a loop. The result is positive if the loop runs counter-clockwise.
 [[nodiscard]] double doubled_area(std::span<const PlanePolygon::Point> loop);
 
-/// Returns true if the segments ab and cd cross or overlap, or if an end of one lies inside the other. Returns false if
-/// the segments only have a common end. The result is exact for the given points.
+/// Returns true if the segments ab and cd cross or overlap, or if an end of one segment lies inside the other segment.
+/// Returns false if the segments only have a common end. The result is exact for the given points.
 [[nodiscard]] bool segments_meet(const PlanePolygon::Point& a, const PlanePolygon::Point& b,
                                  const PlanePolygon::Point& c, const PlanePolygon::Point& d);
 

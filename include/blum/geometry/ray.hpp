@@ -34,7 +34,7 @@ struct TriangleCrossing {
   double t = 0;                     ///< the crossing is at origin + t * direction; >= 0; rounded
   std::array<double, 3> weights{};  ///< barycentric weights of the corners; their sum is 1; rounded
   int side = 0;                     ///< 1 if the ray crosses towards the side that the triangle faces, -1 if it crosses
-                                    ///< the other way
+                                    ///< towards the opposite side
   bool on_border = false;           ///< true if the ray meets an edge or a corner; exact
 };
 

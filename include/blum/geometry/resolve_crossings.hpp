@@ -94,9 +94,9 @@ struct ResolvedMesh {
 /// of any shell. If the result fails this check, its crossings are resolved in another round. If the last round fails,
 /// ResolvedMesh::obstacle contains the reason.
 ///
-/// If parts of the solid meet only in a vertex or an edge, the mesh is separated there: each part gets vertices of its
-/// own. Both parts of one body and parts of different bodies are separated. All other vertices at the same position
-/// become one vertex.
+/// If parts of the solid meet only in a vertex or an edge, the mesh is separated there: each part gets separate
+/// vertices. Both parts of one body and parts of different bodies are separated. All other vertices at the same
+/// position become one vertex.
 ///
 /// @throws InvalidMesh if the mesh fails validate(mesh) or has no triangles; Cancelled.
 /// Cost of a round, on one core: find_self_intersections() twice, topology(), a Bvh, and 0.1 ms for each pair of

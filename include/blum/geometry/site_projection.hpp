@@ -13,8 +13,8 @@
 
 namespace blum {
 
-/// Projection of query points onto sites. A site should be the closest one to the query, or a neighbour of the closest
-/// one. This class converts the result of a fast search in single precision into the result of Bvh::nearest(), bit for
+/// Projection of query points onto sites. A site should be the closest site to the query, or a neighbour of the closest
+/// site. This class converts the result of a fast search in single precision into the result of Bvh::nearest(), bit for
 /// bit. It copies the data that it needs.
 class SiteProjection {
  public:

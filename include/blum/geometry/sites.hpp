@@ -52,7 +52,7 @@ class SiteTable {
   /// Returns the indices of the one, two or three vertices of a site, padded with -1.
   [[nodiscard]] std::array<std::int32_t, 3> vertices(SiteId id) const;
 
-  /// Returns the two vertices of each edge, the smaller one first. Edges are in rising order.
+  /// Returns the two vertices of each edge, the smaller vertex first. Edges are in rising order.
   [[nodiscard]] std::span<const Segment> edges() const { return edges_; }
   /// Returns the edge indices of each triangle. Entry k of a triangle is the edge between its corners k and (k+1) % 3;
   /// none() if these corners are the same vertex.

@@ -12,7 +12,7 @@ namespace blum {
 
 /// Merges vertices with equal coordinates (-0.0 equals 0.0). With tolerance > 0, it also merges vertices that are at
 /// most `tolerance` (mesh units) apart. Merging continues along chains. If each vertex of a chain is at most
-/// `tolerance` away from the next one, the whole chain becomes one vertex, whatever its length.
+/// `tolerance` away from the next vertex, the whole chain becomes one vertex. Chains may have any length.
 ///
 /// - A merged vertex has the position of the original vertex with the smallest index. The vertices of the result are in
 ///   the order of these indices, so the result depends on the input alone. Vertices that no triangle, segment or point

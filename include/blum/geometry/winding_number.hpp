@@ -91,7 +91,7 @@ class WindingNumber {
   [[nodiscard]] bool has_short_boundary() const;
 
   /// Returns w and a bound on its error, by the fastest method. The method is refine() if refine() returns a value.
-  /// Otherwise, it is the full sum if the mesh has few triangles, or else estimate().
+  /// Otherwise, the method is the full sum if the mesh has few triangles, and estimate() if it has many.
   [[nodiscard]] Estimate value(const Vec3d& query, double max_error) const;
 
   /// Returns nullopt if |w - 1/2| may be at most `change`. Otherwise, returns true if w > 1/2, and false if w < 1/2. If

@@ -80,7 +80,7 @@ struct LinkedToriOptions {
   int ring_segments = 96;    ///< >= 8
   int tube_segments = 32;    ///< >= 3
 };
-/// Makes a chain of tori along x. Each torus passes through the next one.
+/// Makes a chain of tori along x. Each torus passes through the next torus.
 [[nodiscard]] TriangleMesh make_linked_tori(const LinkedToriOptions& options = {});
 
 struct RidgedRodOptions {
@@ -156,7 +156,7 @@ struct BodiesOptions {
   int count = 27;      ///< number of bodies, >= 1
   double size = 0.5;   ///< side or diameter of each body, > 0, and above 1e-12 of the side of the lattice
   double spacing = 1;  ///< distance between neighbouring centres, > size
-  int frequency = 0;   ///< 0: boxes of 12 triangles; else spheres, see SphereOptions
+  int frequency = 0;   ///< 0: bodies are boxes of 12 triangles; otherwise spheres, see SphereOptions
 };
 /// Makes `count` separate equal bodies on the smallest cubic lattice that has room for all of them.
 [[nodiscard]] TriangleMesh make_bodies(const BodiesOptions& options = {});

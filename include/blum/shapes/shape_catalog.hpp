@@ -36,7 +36,8 @@ struct ShapeInfo {
 /// @throws InvalidOption if no shape has the name; the message lists the known names.
 [[nodiscard]] const ShapeInfo& find_shape(std::string_view name);
 
-/// Returns values for all parameters of a shape: the given ones, and defaults for the others.
+/// Returns values for all parameters of a shape: the given values, and default values for parameters that are not
+/// given.
 /// @throws InvalidOption if a parameter is unknown or out of range, or if an integer parameter is not a whole number.
 /// The message lists the shape's parameters and ranges.
 [[nodiscard]] ShapeParameters complete_parameters(const ShapeInfo& shape, const ShapeParameters& given);

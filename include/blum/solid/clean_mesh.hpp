@@ -75,7 +75,7 @@ struct CleanedMesh {
 /// Removes needless vertices and needles (thin triangles) from a closed mesh, within a tolerance. Use it before
 /// voronoi_complex(), whose cost grows with the number of sites. Small sites cost most.
 ///
-/// Steps are made one by one. The next step is always the one that changes the surface least. A step moves a vertex
+/// Steps are made one by one. The next step is always the step that changes the surface least. A step moves a vertex
 /// onto a neighbour, or flips the longest side of a flat triangle. The surface stays homeomorphic to the input (the
 /// link condition). Each step has a bound on how far it moves the surface. Bounds of successive steps that move the
 /// same part of the surface are added. Exact arithmetic checks that no new triangle crosses or touches another

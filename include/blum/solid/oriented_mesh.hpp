@@ -23,7 +23,7 @@ struct OrientedMesh {
 /// If equal numbers of a shell's triangles face in the two directions, the triangle with the smallest index decides.
 ///
 /// @param mesh  closed and manifold: each edge has two triangles. Crossings are not detected. If two shells cross, the
-///              triangle with the smallest index in each shell decides which shell counts as inside the other.
+///              triangle with the smallest index in each shell decides which shell counts as the inner shell.
 /// @throws InvalidMesh if the mesh is not closed and manifold, or has only one side, like a Klein bottle. InvalidMesh
 /// is also thrown if a shell encloses no volume (or a volume that no double represents), or if two shells coincide.
 /// Cancelled.

@@ -12,8 +12,8 @@
 namespace blum {
 
 /// Returns the boundary of the set of points around which a closed mesh winds once or more. The mesh keeps its present
-/// orientation: no triangle is reversed. If one shell lies in another one and both face the same way, only the outer
-/// shell remains. If the mesh already is this boundary, the function returns the mesh.
+/// orientation: no triangle is reversed. If a shell lies inside another shell and both face the same way, only the
+/// outer shell remains. If the mesh already is this boundary, the function returns the mesh.
 ///
 /// Use this function instead of Solid::of() for meshes that move. The function computes no bodies, shells or topology,
 /// and takes a fraction of the time of Solid::of().
@@ -35,8 +35,8 @@ void check_faces_outwards(const MeshView& mesh, const std::string& name);
 /// Cost: O(n log n).
 void check_is_closed(const MeshView& mesh, const std::string& name);
 
-/// Returns the number of edges that triangles traverse more often in one direction than in the other. The number is 0
-/// for closed meshes, whose winding numbers are whole numbers.
+/// Returns the number of edges that triangles traverse more often in one direction than in the opposite direction. The
+/// number is 0 for closed meshes, whose winding numbers are whole numbers.
 /// Cost: O(n log n).
 [[nodiscard]] std::size_t open_edges(const MeshView& mesh);
 
