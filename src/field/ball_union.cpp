@@ -101,7 +101,7 @@ struct BallRows {
   [[nodiscard]] Ball operator[](std::size_t k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
-/// Removes balls that cannot be the closest one anywhere in a block. Compares each ball with the ball closest to the
+/// Removes balls that cannot be the closest ball anywhere in a block. Compares each ball with the ball closest to the
 /// block's centre.
 class Filter {
  public:
@@ -195,7 +195,7 @@ class Filter {
 
   std::vector<double> to_centre_;
   std::vector<double> value_;
-  std::vector<double> lead_;  ///< per ball: negative if it may be the closest one somewhere in the block
+  std::vector<double> lead_;  ///< per ball: negative if it may be the closest ball somewhere in the block
 };
 
 /// A block, and the balls that may be closest in it.

@@ -198,7 +198,7 @@ struct ClosestPointQuery::Data {
     use_planned_triangles(context);
   }
 
-  /// If the plan has other triangles than the mesh, puts them in their place.
+  /// If the plan has other triangles than the mesh, replaces the triangles of the mesh by those of the plan.
   void use_planned_triangles(const Context& context) {
     if (plan.triangles.empty()) return;
     given_triangles_ = mesh.triangles;
@@ -259,7 +259,7 @@ struct ClosestPointQuery::Data {
   }
 
   /// Answers queries in an order in which consecutive queries lie close together. The closest point of each query
-  /// bounds the distance of the next one.
+  /// bounds the distance of the next query.
   void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order, Use use) const {
     InlineList<PointSearch::Answer, sign::most_shared> group;
     std::optional<NearestSite> last;

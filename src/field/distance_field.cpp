@@ -115,7 +115,7 @@ class SecondSearch {
   SecondSearch(const MeshView& mesh, const SiteTable& sites, const SecondLabels& labels, const Context& context);
 
   /// Returns the closest site that shares no label with `first`, or none if it is further than `limit`. Among equally
-  /// close sites it returns the one with the smallest id.
+  /// close sites, the site with the smallest id is returned.
   /// @param first_distance  approximate distance of the first site. The first radius follows from this distance.
   [[nodiscard]] SecondSite find(const Vec3d& query, SiteId first, double first_distance, double limit) const;
 

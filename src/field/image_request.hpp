@@ -12,8 +12,8 @@
 namespace blum::detail {
 
 /// Request for a transform, and the memory of its result. The request is created once, and passed unchanged to the
-/// CPU's passes, or to the CUDA module and its kernels. Axes of length one are removed; the others move forward. The
-/// struct must be plain data; cuda::module_version must change with its layout.
+/// CPU's passes, or to the CUDA module and its kernels. Axes of length one are removed, and the remaining axes move
+/// forward. The struct must be plain data; cuda::module_version must change with its layout.
 struct ImageRequest {
   std::size_t size[3] = {1, 1, 1};
   bool is_signed = true;

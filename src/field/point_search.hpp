@@ -16,7 +16,7 @@
 namespace blum {
 
 /// Answers many queries at once. The answers are bitwise those of Bvh::nearest(). Kernels in single precision find the
-/// closest site, and a second one if both are equally close within rounding. If the query lies in the domains of these
+/// closest site, and a second site if both are equally close within rounding. If the query lies in the domains of these
 /// sites by a margin, their distances are computed in double precision. Otherwise the Bvh is searched, with the bound
 /// on the distance that is already known.
 class PointSearch {

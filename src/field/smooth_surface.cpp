@@ -119,9 +119,9 @@ struct NetBox {
 };
 
 /// Surface between a set of voxels and the other voxels: a closed, oriented manifold of quadrilaterals and triangles.
-/// All polygons face the unselected voxels. Coordinates are in voxels; the centres of voxels are integers. The start
-/// positions are those of the voxels' faces. Where voxels touch only in an edge or a corner, the surface connects them,
-/// and start positions are moved apart a little.
+/// All polygons face the unselected voxels. Coordinates are in voxels; the centres of voxels are integers. Start
+/// positions lie on the faces of voxels. Where voxels touch only in an edge or a corner, the surface connects them, and
+/// start positions are moved apart a little.
 struct SurfaceNet {
   static constexpr std::uint32_t none = 0xffffffff;
 

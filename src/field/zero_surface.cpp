@@ -56,7 +56,7 @@ constexpr int volume(const Corner3& p, const Corner3& q, const Corner3& r) {
 using Pair = std::array<unsigned, 2>;
 
 /// Returns the edge between two corners of a tetrahedron. All bits of the smaller corner are also set in the larger
-/// one.
+/// corner.
 constexpr CubeEdge edge_of(const Pair& pair) {
   const unsigned from = pair[0] & pair[1];
   return {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>((pair[0] | pair[1]) ^ from)};

@@ -17,7 +17,7 @@ namespace {
 /// angle 30.
 constexpr double rounding = 1e-6;  // degrees
 
-/// Returns true if a triangle runs along an edge from its smaller vertex to the larger one.
+/// Returns true if a triangle runs along an edge from its smaller to its larger vertex.
 bool runs_along(const Triangle& triangle, const Segment& edge) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (triangle[k] == edge[0] && triangle[(k + 1) % 3] == edge[1]) return true;

@@ -66,8 +66,8 @@ void validate(const MeshView& mesh) {
       mesh.segments.size() > max_id_count) {
     throw InvalidMesh("the mesh has more than 2^31 - 1 vertices, triangles or segments");
   }
-  // Vertices are used several times each. The first loop only looks for errors; the element that uses a vertex matters
-  // only if there is one.
+  // Vertices are used several times each. The first loop only searches for errors. Only if an error exists, the element
+  // that uses the vertex matters.
   std::uint32_t largest = 0;
   for_each_named_vertex(mesh, [&](std::uint32_t v) { largest = std::max(largest, v); });
   if (largest < mesh.vertices.size() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_usable)) return;

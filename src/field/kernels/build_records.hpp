@@ -161,7 +161,8 @@ struct RecordSource {
   const Vec3d* positions;
   const std::uint32_t* rank;
   ReachSearch reach;
-  /// Written by the kernel of faces, read by that of edges; zero for triangles too flat for a reliable normal.
+  /// The kernel of faces writes these normals, and the kernel of edges reads them. They are zero for triangles too flat
+  /// for a reliable normal.
   Vec3d* face_normals;
 
   [[nodiscard]] BLUM_HD std::uint32_t first_face() const { return mesh.vertex_count + connectivity.edge_count; }

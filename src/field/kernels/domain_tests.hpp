@@ -129,7 +129,7 @@ BLUM_HD inline bool face_matters(const Record& record, const CenteredBox& box, c
   return domination.keeps(n * height, height * height, domination.squared_half);
 }
 
-/// Returns true if a site may be the closest one somewhere in a box. The record of the site must not be dead.
+/// Returns true if a site may be the closest site somewhere in a box. The record of the site must not be dead.
 /// @param box  must be widened by box_slack.
 BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const CenteredBox& box,
                                  const Domination& domination) {

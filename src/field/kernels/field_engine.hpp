@@ -107,7 +107,7 @@ struct ShowTriangle {
 /// slabs.
 class Slabs {
  public:
-  /// @param nodes  largest number of nodes of a slab. A slab may exceed it if the grid's slices are too large.
+  /// @param nodes  largest number of nodes of a slab. A slab may exceed this number if the grid's slices are too large.
   Slabs(const GridSpec& grid, std::size_t nodes)
       : per_slice_(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1])),
         size_(grid.size[2]) {
@@ -208,7 +208,7 @@ class FieldEngine {
       part.site = request.site != nullptr ? to.site.data() : nullptr;
       compute_slab(slabs, slab, part, is_signed);
       device_.mark(static_cast<int>(slab % 2));
-      // While this slab is computed, the previous one is copied to the host.
+      // While this slab is computed, the previous slab is copied to the host.
       if (slab > 0) {
         device_.await(static_cast<int>((slab - 1) % 2));
         fetch(slab - 1);

@@ -105,8 +105,8 @@ class Column {
     return pass_.change[std::size_t{band} * pass_.columns + column_];
   }
 
-  /// Position between the entries of a run. The next lower entries are those in slots slot - 1, slot - 2, ... of the
-  /// band, and then those of the bands before it.
+  /// Position between the entries of a run. The next lower entries are in slots slot - 1, slot - 2, ... of the band,
+  /// then in the bands before it.
   struct Cursor {
     std::uint32_t slot = 0;
     std::uint32_t band = 0;
@@ -240,7 +240,7 @@ struct BuildEnvelopes {
       top_ = column_.wall(row - 1);
       depth_ = 1;
     }
-    /// Drops entries that the wall at the end of a run hides, and stores the slot after the last one left.
+    /// Drops entries that the wall at the end of a run hides, and stores the slot after the last remaining entry.
     BLUM_HD void finish(std::uint32_t row, bool has_wall) {
       if (has_wall) make_room(column_.wall(row));
       column_.set_top(row, slot_);
@@ -405,8 +405,8 @@ struct AssignSites {
         }
       }
     }
-    /// Offers an entry of a later band. Returns false if it is higher than the best one, so that all entries above it
-    /// are higher, too.
+    /// Offers an entry of a later band. Returns false if the entry is higher than the best entry, so that all entries
+    /// above it are higher, too.
     BLUM_HD bool offer_from_above(std::uint32_t row, const Entry& entry, const Cursor& below) {
       const Value height = column_.height(entry, row);
       const Value lowest = is_empty_ ? height : column_.height(best_, row);
@@ -431,7 +431,7 @@ struct AssignSites {
         has_next_ = descend(kind, next_);
       }
     }
-    /// Used if the next entry is higher than the best one, but only within rounding. Searches further below for an
+    /// Used if the next entry is higher than the best entry, but only within rounding. Searches further below for an
     /// entry at most as high as `lowest`. If found, makes it the next entry and returns true.
     BLUM_HD bool look_below(std::uint32_t row, bool kind, Value lowest) {
       Cursor cursor = cursor_;

@@ -115,7 +115,7 @@ struct IntegerCosts {
 };
 
 /// Squared distances in double, rounded as on the CPU. A parabola is dropped only if it is certainly higher than the
-/// others, rounding included. If several are about equally low, all of them are evaluated.
+/// other parabolas, rounding included. If several are about equally low, all of them are evaluated.
 struct RealCosts {
   using Value = double;
   static constexpr bool is_exact = false;

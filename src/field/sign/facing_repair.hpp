@@ -22,14 +22,14 @@ struct FacingRepair {
 
 /// Finds the parts of a mesh that face into the solid.
 ///
-/// Vertices at the same position count as one. So a soup of triangles without common vertices counts as a surface. If
-/// the mesh still has a boundary, positions that differ by rounding to single precision count as the same. Such
-/// positions count as the same only if this leaves fewer boundary edges. If the mesh is then closed, repaired_facing()
-/// decides. Shells that cross have no depth. If shells cross and one has a negative volume, all shells are examined
-/// again. If the mesh is not closed, a part consists of triangles connected through edges. First, the triangles of each
-/// part get consistent orientations, if that is possible and the part then surrounds a volume. If a part then has a
-/// negative volume, all parts are examined. Flat sheets and single triangles are never reversed, since they surround no
-/// volume.
+/// Vertices at the same position count as one vertex. So a soup of triangles without common vertices counts as a
+/// surface. If the mesh still has a boundary, positions that differ by rounding to single precision count as the same.
+/// Such positions count as the same only if this leaves fewer boundary edges. If the mesh is then closed,
+/// repaired_facing() decides. Shells that cross have no depth. If shells cross and a shell has a negative volume, all
+/// shells are examined again. If the mesh is not closed, a part consists of triangles connected through edges. First,
+/// the triangles of each part get consistent orientations, if that is possible and the part then surrounds a volume. If
+/// a part then has a negative volume, all parts are examined. Flat sheets and single triangles are never reversed,
+/// since they surround no volume.
 ///
 /// A part is examined by winding numbers of the whole mesh at sample points, which are spread evenly over the part's
 /// area. The mean of the numbers on both sides of a sample point is about 1/2 beside a solid and beside its voids. The

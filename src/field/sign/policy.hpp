@@ -39,7 +39,7 @@ struct Plan {
   bool is_simple = false;
 };
 
-/// Plans the signs of meshes, one after the other. If a mesh is a deformation of the previous one, kept data make the
+/// Plans the signs of meshes, one after the other. If a mesh is a deformation of the previous mesh, kept data make the
 /// search for self-intersections faster. Plans do not depend on these data.
 class Planner {
  public:

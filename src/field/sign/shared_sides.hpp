@@ -24,10 +24,10 @@ inline constexpr std::size_t most_shared = 256;
 /// Decides sides as WindingNumber::is_inside() does. The points must be in an order in which neighbours follow each
 /// other.
 ///
-/// Only a few points are evaluated; those furthest from the surface are first. Another point takes over an answer if
-/// both points certainly have the same side. No triangle lies between two points whose distances add up to more than
-/// the distance between them. The winding number does not cross 1/2 between them if the bound on its gradient excludes
-/// it (WindingNumber::gradient_bound). Near the rims of holes this bound is too large to be useful, and each point is
+/// Only a few points are evaluated, first those furthest from the surface. Another point takes over an answer if both
+/// points certainly have the same side. No triangle lies between two points whose distances add up to more than the
+/// distance between them. The winding number does not cross 1/2 between them if the bound on its gradient excludes it
+/// (WindingNumber::gradient_bound). Near the rims of holes this bound is too large to be useful, and each point is
 /// evaluated.
 ///
 /// @param points  at most most_shared.

@@ -164,7 +164,8 @@ NodeSet nodes_in_grid(const NodeBlock& block) {
   return out;
 }
 
-/// Makes the nodes of a set the next part. `steps` is the number of steps from its first node to its furthest one.
+/// Makes the nodes of a set the next part. `steps` is the number of steps from the first node of the set to its
+/// furthest node.
 void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, BlockParts& out) {
   const auto part = static_cast<std::uint16_t>(out.count++);
   std::size_t best = block_nodes;
@@ -550,8 +551,8 @@ class SignWriter {
     if (winding_.is_inside(field_.grid.position(at[0], at[1], at[2]))) negate(node);
   }
 
-  /// Evaluates a box of nodes over which the winding number may cross 1/2. If the number changes too little from the
-  /// box's middle to cross it, all nodes get one answer. Otherwise the box is divided into eight.
+  /// Evaluates a box of nodes over which the winding number may cross 1/2. If the number cannot reach 1/2 from its
+  /// value at the box's middle, all nodes get one answer. Otherwise the box is divided into eight.
   void ask_box(const Corner& first, const Corner& last) {
     const Corner size{last[0] - first[0], last[1] - first[1], last[2] - first[2]};
     const Corner middle{first[0] + size[0] / 2, first[1] + size[1] / 2, first[2] + size[2] / 2};

@@ -1,6 +1,6 @@
-// Loops over the lanes of a block, vectorised by the compiler. With Highway they are compiled once per instruction set,
-// and the machine's best one is chosen at program start. Without Highway (BLUM_SIMD=OFF, or not installed) they are
-// compiled once, for instructions that every machine has.
+// Loops over the lanes of a block, vectorised by the compiler. With Highway, they are compiled once per instruction
+// set, and the machine's best instruction set is chosen at program start. Without Highway (BLUM_SIMD=OFF, or not
+// installed) they are compiled once, for instructions that every machine has.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -86,7 +86,7 @@ struct alignas(64) FlatTriangleBlock {
 
 /// Common directions of a block of triangles.
 struct BlockShape {
-  Vec3d normal;  ///< sum of normals (twice the area long), all flipped to the side of the first one
+  Vec3d normal;  ///< sum of normals (of twice the area as length), all flipped to the side of the first normal
   Vec3d along;   ///< vector between the middles of the block's two halves, times 12
 };
 

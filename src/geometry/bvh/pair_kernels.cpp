@@ -173,7 +173,7 @@ void set_normals(FlatTriangleBlock& block, BlockShape& out) {
     block.normal[1][i] = n.y * inverse;
     block.normal[2][i] = n.z * inverse;
   }
-  // Soups have no consistent orientation. So normals are flipped to the side of the first one.
+  // Soups have no consistent orientation. So normals are flipped to the side of the first normal.
   const Vec3d first{area[0][0], area[1][0], area[2][0]};
   alignas(64) double turned[3][lanes];
   for (std::size_t i = 0; i < lanes; ++i) {

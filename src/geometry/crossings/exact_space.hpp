@@ -21,7 +21,7 @@ using PointId = std::uint32_t;
 /// Plane through three vertices, or through two vertices and parallel to an axis.
 struct Cut {
   std::array<PointId, 3> corners{};
-  int axis = -1;  ///< for a plane parallel to an axis: that axis; else -1
+  int axis = -1;  ///< axis to which the plane is parallel; -1 for a plane through three vertices
 };
 
 /// Vertices of a mesh and points constructed from them, with exact predicates. Coordinates of points are quotients of

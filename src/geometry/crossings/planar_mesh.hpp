@@ -64,7 +64,7 @@ class PlanarMesh {
   [[nodiscard]] bool wants_flip(const Edge& edge) const;
   [[nodiscard]] std::optional<std::deque<std::array<Index, 2>>> crossed_by(Index from, Index to) const;
   /// Calls visit(triangle, index k of the corner) for the triangles around a corner, until a call returns true. Returns
-  /// true if one did.
+  /// true if a call returned true.
   template <class Visit>
   bool around(Index corner, const Visit& visit) const;
 

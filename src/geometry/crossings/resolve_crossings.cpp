@@ -542,7 +542,7 @@ std::size_t pinches(const TriangleMesh& mesh, const Topology& topology) {
   return count;
 }
 
-/// Returns the reason why a mesh is not the boundary of a solid; an empty string if it is one.
+/// Returns the reason why a mesh is not the boundary of a solid; an empty string if it is the boundary of a solid.
 std::string obstacle_of(const TriangleMesh& mesh, const Topology& topology, const Context& context) {
   if (topology.nonmanifold_edges > 0) {
     return "the solid touches itself along " + number(topology.nonmanifold_edges, "edge");

@@ -345,7 +345,7 @@ class Cutter {
     }
     for (const std::array<PointId, 3>& corners : triangles) {
       Facet facet{corners, 0, nobody, s};
-      // First member triangle that faces up; below, the first one that faces down.
+      // First member triangles that face up and down.
       std::uint32_t up = nobody;
       std::uint32_t down = nobody;
       for (std::size_t m = 0; m < members.size(); ++m) {

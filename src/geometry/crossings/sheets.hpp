@@ -71,7 +71,7 @@ struct Facet {
   /// Multiplicity, > 0: number of input triangles here with this direction, minus the number with the opposite
   /// direction.
   std::int32_t times = 1;
-  std::uint32_t source = 0;  ///< input triangle that contains it and faces the same way
+  std::uint32_t source = 0;  ///< input triangle that contains the facet and has its orientation
   std::uint32_t sheet = 0;   ///< facets with equal numbers lie in one plane and were cut together
 };
 
@@ -88,7 +88,7 @@ struct CutMesh {
   ExactSpace space;
   std::vector<Facet> facets = {};
   std::vector<std::uint32_t> sheet_of = {};  ///< sheet of each input triangle
-  /// Number of input triangles that were cut: those in pairs or with cut edges.
+  /// Number of input triangles that were cut: triangles in pairs, and triangles with cut edges.
   std::size_t cut = 0;
 };
 

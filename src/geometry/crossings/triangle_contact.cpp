@@ -60,7 +60,7 @@ bool on_both_sides(const Signs& s) {
 }
 
 /// Returns the contact of the triangles p, q, a and p, q, b with the common edge from p to q. The triangles overlap
-/// only if one is folded onto the other.
+/// only if one triangle is folded onto the other.
 Contact contact_over_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b) {
   if (orient3d(p, q, a, b) != 0) return Contact::none;
   const Projection plane({p, q, a});

@@ -154,7 +154,7 @@ struct Pair {
   [[nodiscard]] Pair exchanged() const { return {squared, q, p, of_q, of_p}; }
 };
 
-/// Offers the closest pairs of a corner of one triangle and a point on an edge of the other.
+/// Offers the closest pairs of a corner of one triangle and a point on an edge of the other triangle.
 void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
   // All distances are computed before they are compared, so that no computation waits for the previous one.
   std::array<double, 9> squares;

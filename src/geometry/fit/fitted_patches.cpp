@@ -380,8 +380,8 @@ class PatchGrower {
       if (part_of_[all[k]] == none && (borders[k] >= 0.5 * longest) == is_long) visit(all[k]);
     }
   }
-  /// Returns a face and those neighbours that lie across its long edges, or across its short ones. So the strips of a
-  /// cylinder are found without the faces at the strips' ends.
+  /// Returns a face and its neighbours across its long edges, or across its short edges. So the strips of a cylinder
+  /// are found without the faces at the strips' ends.
   [[nodiscard]] std::vector<std::uint32_t> beside(std::uint32_t seed, bool is_long) const {
     std::vector<std::uint32_t> out{seed};
     visit_beside(seed, is_long, [&](std::uint32_t f) { out.push_back(f); });
@@ -440,7 +440,7 @@ class PatchGrower {
     return part.faces.size() >= 3 && part.vertices >= static_cast<std::size_t>(parameters_of(part.model.kind)) + more;
   }
 
-  /// Returns true if a part is chosen instead of another one from the same seed.
+  /// Returns true if a part is chosen instead of another part from the same seed.
   [[nodiscard]] static bool is_better(const Part& part, const Part& than) {
     if (part.area > larger * than.area) return true;
     if (than.model.kind == SurfaceKind::plane || part.area * larger < than.area) return false;

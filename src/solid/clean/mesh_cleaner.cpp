@@ -253,9 +253,9 @@ double cosine(const Vec3d& a, const Vec3d& b) {
 
 constexpr std::size_t looks_between_reports = 256;
 constexpr std::size_t vertices_per_range = 256;
-/// A vertex with more triangles than this is visited again only after one in `part_to_change` of them has changed. A
-/// visit takes time linear in the number of triangles. Without this limit, the centre of a large disc would be visited
-/// after each change of its triangles.
+/// A vertex with more triangles than this is visited again only after a 1 / `part_to_change` share of its triangles has
+/// changed. A visit takes time linear in the number of triangles. Without this limit, the centre of a large disc would
+/// be visited after each change of its triangles.
 constexpr std::size_t many_triangles = 64;
 constexpr std::size_t part_to_change = 8;
 

@@ -60,7 +60,7 @@ class TriangleBoxes {
   std::vector<std::uint32_t> leaf_of_;
 };
 
-/// An edge at the border of the changed triangles. The inner triangle at the edge gets another apex; the outer one
+/// An edge at the border of the changed triangles. The inner triangle at the edge gets another apex; the outer triangle
 /// stays the same.
 struct BorderEdge {
   std::uint32_t a = 0, b = 0;
@@ -156,7 +156,7 @@ class CollapseSearch {
   };
   struct Shape {
     bool is_allowed = false;
-    double quality = 0;  ///< quality of the worst new triangle; 1 for an equilateral one
+    double quality = 0;  ///< quality of the worst new triangle; 1 for an equilateral triangle
   };
 
   [[nodiscard]] bool is_needle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
@@ -193,7 +193,7 @@ class MeshCleaner {
   [[nodiscard]] const ShrinkingSurface& mesh() const { return mesh_; }
   [[nodiscard]] std::size_t collapses() const { return collapses_; }
   [[nodiscard]] std::size_t flips() const { return flips_; }
-  /// Returns an upper bound on the Hausdorff distance between the current mesh and the given one.
+  /// Returns an upper bound on the Hausdorff distance between the current mesh and the given mesh.
   [[nodiscard]] double deviation() const;
 
  private:
