@@ -3,189 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/core/sort_unique.hpp"
-#include "blum/geometry/oriented_bvh.hpp"
-#include "blum/geometry/primitives.hpp"
-#include "blum/geometry/triangle_distance.hpp"
+#include "planning/bodies.hpp"
+#include "planning/least_clearance.hpp"
+#include "planning/motion_tests.hpp"
+#include "planning/pose_sources.hpp"
 
 namespace blum {
 namespace {
 
-/// A mesh that does not deform, with a hierarchy over it.
-class RigidMesh {
- public:
-  RigidMesh(const MeshView& mesh, const Context& context)
-      : vertices_(mesh.vertices.begin(), mesh.vertices.end()), bvh_(mesh, context) {
-    for (std::uint32_t k = 0; k < bvh_.size(); ++k) primitives_.push_back(primitive_vertices(mesh, k));
-    constexpr std::size_t many = 1024;
-    if (3 * primitives_.size() > many) {
-      for (unsigned k = 0; k < 8; ++k) {
-        const auto side = [&](std::size_t axis) {
-          return (k >> axis & 1U) != 0 ? bounds().upper[axis] : bounds().lower[axis];
-        };
-        hull_points_.push_back({side(0), side(1), side(2)});
-      }
-      return;
-    }
-    std::vector<std::uint32_t> used;
-    for (const std::array<std::uint32_t, 3>& corners : primitives_)
-      used.insert(used.end(), corners.begin(), corners.end());
-    detail::sort_unique(used);
-    for (const std::uint32_t v : used) hull_points_.push_back(vertices_[v]);
-  }
-
-  [[nodiscard]] const OrientedBvh& bvh() const { return bvh_; }
-  [[nodiscard]] const Box3& bounds() const { return bvh_.bounds(); }
-  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const {
-    const auto& [a, b, c] = primitives_[primitive];
-    return {vertices_[a], vertices_[b], vertices_[c]};
-  }
-  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive, const RigidTransform& pose) const {
-    const auto& [a, b, c] = primitives_[primitive];
-    return {pose(vertices_[a]), pose(vertices_[b]), pose(vertices_[c])};
-  }
-
-  /// Returns points whose convex hull contains the mesh: its vertices, or the corners of its box if it has many.
-  [[nodiscard]] const std::vector<Vec3d>& hull_points() const { return hull_points_; }
-
- private:
-  std::vector<Vec3d> vertices_;
-  std::vector<std::array<std::uint32_t, 3>> primitives_;
-  std::vector<Vec3d> hull_points_;
-  OrientedBvh bvh_;
-};
-
-void check_coordinates(const MeshView& mesh, const char* name) {
-  constexpr double furthest = 1e70;
-  validate(mesh);
-  for (const Vec3d& p : mesh.vertices) {
-    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= furthest) continue;
-    throw InvalidMesh(std::string("motion: a coordinate of the ") + name + " is beyond 1e70; use other units");
-  }
-}
-
-}  // namespace
-
-struct MotionCertifier::Data {
-  RigidMesh body;
-  RigidMesh obstacles;
-};
-
-namespace {
-
-/// The tests of one motion.
-class MotionTests {
- public:
-  MotionTests(const RigidMesh& body, const RigidMesh& obstacles, const RigidMotion& motion, const Context& context)
-      : body_(body), obstacles_(obstacles), motion_(motion), context_(context) {
-    double from_axis = 0, from_centre = 0;  // squared
-    for (const Vec3d& p : body.hull_points()) {
-      const Vec3d step = p - motion.centre();
-      from_axis = std::max(from_axis, squared_length(cross(motion.axis(), step)));
-      from_centre = std::max(from_centre, squared_length(step));
-    }
-    constexpr double rounding = 1 + 1e-14;
-    speed_ = rounding * motion.speed(std::sqrt(from_axis));
-    // Boxes of hierarchies and distances of primitives are rounded, too.
-    const double reach = std::sqrt(from_centre);
-    const double largest = obstacles.bounds().largest_coordinate() + reach + length(motion.at(0).translation) +
-                           length(motion.at(1).translation) + length(motion.centre());
-    error_ = motion.rounding(reach) + 4e-14 * largest;
-  }
-
-  /// Returns a bound on the way of all points of the body, mesh units per unit of time.
-  [[nodiscard]] double speed() const { return speed_; }
-  /// Returns a bound on the difference between exact and computed distances, mesh units.
-  [[nodiscard]] double error() const { return error_; }
-  [[nodiscard]] std::size_t count() const { return count_; }
-
-  /// Returns true if the surfaces are further apart than a distance at a time.
-  bool are_apart(double time, double distance) {
-    throw_if_cancelled(context_);
-    ++count_;
-    const RigidTransform pose = motion_.at(time);
-    const auto is_close = [&](std::uint32_t obstacle, std::uint32_t own) {
-      return triangle_distance(obstacles_.corners(obstacle), body_.corners(own, pose)).distance <= distance;
-    };
-    // A pair that was close at another time is mostly close again.
-    if (last_ && is_close(last_->first, last_->second)) return false;
-    bool is_found = false;
-    obstacles_.bvh().for_each_near_pair(body_.bvh(), pose, distance + error_,
-                                        [&](std::uint32_t obstacle, std::uint32_t own, double) -> OrientedBvh::Wanted {
-                                          if (!is_close(obstacle, own)) return distance + error_;
-                                          last_ = {obstacle, own};
-                                          is_found = true;
-                                          return -1.0;
-                                        });
-    return !is_found;
-  }
-
-  /// Returns the closest pair at a time, among pairs that are at most a distance apart.
-  [[nodiscard]] std::optional<MotionPair> closest(double time, double distance) const {
-    const RigidTransform pose = motion_.at(time);
-    std::optional<MotionPair> best;
-    double limit = distance;
-    obstacles_.bvh().for_each_near_pair(
-        body_.bvh(), pose, limit + error_,
-        [&](std::uint32_t obstacle, std::uint32_t own, double) -> OrientedBvh::Wanted {
-          const TriangleDistance found = triangle_distance(body_.corners(own, pose), obstacles_.corners(obstacle));
-          if (found.distance <= limit && (!best || found.distance < best->distance)) {
-            best = MotionPair{own, obstacle, found.distance, found.first_point, found.second_point};
-            limit = found.distance;
-          }
-          return limit == 0 ? -1.0 : limit + error_;
-        });
-    return best;
-  }
-
- private:
-  const RigidMesh& body_;
-  const RigidMesh& obstacles_;
-  const RigidMotion& motion_;
-  const Context& context_;
-  double speed_ = 0;
-  double error_ = 0;
-  std::size_t count_ = 0;
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> last_;  ///< an obstacle and a primitive of the body
-};
-
-/// An interval of time that is not proven free, and at whose middle the surfaces are close.
-struct Doubt {
-  double from = 0, to = 1;
-  [[nodiscard]] double middle() const { return from + 0.5 * (to - from); }
-};
-
-/// Returns the first interval that stays in doubt; nothing if the whole motion is free.
-std::optional<Doubt> first_doubt(MotionTests& tests, double clearance, double delta, const Doubt& of) {
-  const double half = 0.5 * (of.to - of.from) * tests.speed();
-  if (tests.are_apart(of.middle(), clearance + half + 2 * tests.error())) return std::nullopt;
-  const bool is_short = half + 2 * tests.error() < delta;
-  const bool is_single = of.middle() <= of.from || of.middle() >= of.to;
-  if (is_short || is_single) return of;
-  if (const auto first = first_doubt(tests, clearance, delta, {of.from, of.middle()})) return first;
-  return first_doubt(tests, clearance, delta, {of.middle(), of.to});
-}
-
-/// Returns a time at which the surfaces meet, at or soon after an interval in doubt.
-std::optional<std::pair<double, MotionPair>> contact_after(const MotionTests& tests, const Doubt& doubt) {
-  double step = 0;
-  for (double time = doubt.middle(); time <= 1; time = doubt.middle() + step) {
-    const auto pair = tests.closest(time, 0);
-    if (pair && pair->distance == 0) return std::pair(time, *pair);
-    step = step == 0 ? std::max(doubt.to - doubt.from, 0x1p-40) : 2 * step;
-  }
-  return std::nullopt;
-}
+using detail::Doubt;
+using detail::MotionTests;
 
 void check(const MotionOptions& options) {
   if (!(options.clearance >= 0 && std::isfinite(options.clearance))) {
@@ -196,47 +28,205 @@ void check(const MotionOptions& options) {
   }
 }
 
-}  // namespace
-
-MotionCertifier::MotionCertifier(const MeshView& body, const MeshView& obstacles, const Context& context) {
-  check_coordinates(body, "body");
-  check_coordinates(obstacles, "obstacles");
-  data_ = std::make_unique<Data>(Data{RigidMesh(body, context), RigidMesh(obstacles, context)});
+/// Returns for each pair the distance above the clearance that need not be proven.
+std::vector<double> deltas_of(const MotionTests& tests, const std::optional<double>& given) {
+  std::vector<double> out;
+  for (std::size_t pair = 0; pair < tests.pairs(); ++pair) {
+    const double smallest = 8 * tests.error(pair);
+    out.push_back(std::max(given ? *given : 1e-6 * tests.size(pair), smallest));
+  }
+  return out;
 }
 
-MotionCertifier::MotionCertifier(MotionCertifier&&) noexcept = default;
-MotionCertifier& MotionCertifier::operator=(MotionCertifier&&) noexcept = default;
-MotionCertifier::~MotionCertifier() = default;
-
-Vec3d MotionCertifier::centre() const {
-  return data_->body.bounds().center();
+/// Joins meshes into one. Primitives keep their order within triangles, segments and points.
+TriangleMesh join(std::span<const MeshView> meshes, std::vector<detail::Bodies::Ends>& ends) {
+  TriangleMesh out;
+  for (const MeshView& mesh : meshes) {
+    validate(mesh);
+    const auto shift = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.insert(out.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const Triangle& t : mesh.triangles) out.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    for (const Segment& s : mesh.segments) out.segments.push_back({s[0] + shift, s[1] + shift});
+    for (const std::uint32_t point : mesh.points) out.points.push_back(point + shift);
+    ends.push_back({out.triangles.size(), out.segments.size(), out.points.size()});
+  }
+  return out;
 }
 
-CertifiedMotion MotionCertifier::certify(const RigidMotion& motion, const MotionOptions& options,
-                                         const Context& context) const {
-  check(options);
-  throw_if_cancelled(context);
+CertifiedMotion certify(MotionTests tests, const MotionOptions& options) {
   CertifiedMotion out;
-  MotionTests tests(data_->body, data_->obstacles, motion, context);
-  const Box3& box = data_->body.bounds();
-  const double smallest = 8 * tests.error();
-  const double delta = std::max(options.delta ? *options.delta : 1e-6 * box.diagonal(), smallest);
-  const std::optional<Doubt> doubt = first_doubt(tests, options.clearance, delta, {});
+  const std::vector<double> deltas = deltas_of(tests, options.delta);
+  const std::optional<Doubt> doubt = first_doubt(tests, options.clearance, deltas);
   out.tests = tests.count();
   if (!doubt) {
     out.free_until = 1;
     return out;
   }
-  out.free_until = doubt->from;
-  if (auto contact = contact_after(tests, *doubt)) {
+  out.free_until = doubt->at.from;
+  if (auto contact = contact_after(tests, doubt->at)) {
     out.verdict = MotionVerdict::colliding;
     out.time = contact->first;
     out.closest = contact->second;
     return out;
   }
   out.verdict = MotionVerdict::too_close;
-  out.time = doubt->middle();
-  out.closest = tests.closest(out.time, options.clearance + delta);
+  out.time = doubt->at.middle();
+  out.closest = tests.closest(out.time, options.clearance + deltas[doubt->pair]);
+  return out;
+}
+
+}  // namespace
+
+void detail::Bodies::name_obstacle(std::uint32_t primitive, MotionPair& pair) const {
+  const Ends& all = ends.back();
+  std::size_t local = primitive;
+  std::size_t Ends::*kind = &Ends::triangles;
+  if (local >= all.triangles) {
+    local -= all.triangles;
+    kind = &Ends::segments;
+    if (local >= all.segments) {
+      local -= all.segments;
+      kind = &Ends::points;
+    }
+  }
+  std::size_t k = 0;
+  while (local >= ends[k].*kind) ++k;
+  const Ends before = k == 0 ? Ends{} : ends[k - 1];
+  local -= before.*kind;
+  if (kind != &Ends::triangles) local += ends[k].triangles - before.triangles;
+  if (kind == &Ends::points) local += ends[k].segments - before.segments;
+  pair.obstacle = static_cast<std::uint32_t>(k);
+  pair.other_primitive = static_cast<std::uint32_t>(local);
+}
+
+MotionCertifier::MotionCertifier(const MeshView& body, const MeshView& obstacles, const Context& context)
+    : MotionCertifier(std::span(&body, 1), std::span(&obstacles, 1), context) {}
+
+MotionCertifier::MotionCertifier(std::span<const MeshView> bodies, std::span<const MeshView> obstacles,
+                                 const Context& context)
+    : bodies_(std::make_unique<detail::Bodies>()) {
+  if (bodies.empty()) throw InvalidOption("motion: there is no body; give at least one");
+  if (bodies.size() == 1 && obstacles.empty()) {
+    throw InvalidOption("motion: there are one body and no obstacle; give an obstacle or a second body");
+  }
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const std::string name = bodies.size() == 1 ? "body" : "body " + std::to_string(k);
+    bodies_->bodies.emplace_back(bodies[k], name, context);
+  }
+  if (!obstacles.empty()) bodies_->obstacles.emplace(join(obstacles, bodies_->ends), "obstacles", context);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (bodies_->obstacles) bodies_->pairs.push_back({.body = k});
+    for (std::size_t other = k + 1; other < bodies.size(); ++other) bodies_->pairs.push_back({.body = k, .other = other});
+  }
+}
+
+MotionCertifier::MotionCertifier(MotionCertifier&&) noexcept = default;
+MotionCertifier& MotionCertifier::operator=(MotionCertifier&&) noexcept = default;
+MotionCertifier::~MotionCertifier() = default;
+
+std::size_t MotionCertifier::size() const {
+  return bodies_->bodies.size();
+}
+
+namespace {
+
+void check_body(std::size_t body, std::size_t bodies) {
+  if (body < bodies) return;
+  throw InvalidOption("motion: there is no body " + std::to_string(body) + "; the bodies are numbered from 0 to " +
+                      std::to_string(bodies - 1));
+}
+
+}  // namespace
+
+void MotionCertifier::exclude(std::size_t body, std::size_t other_body) {
+  check_body(body, size());
+  check_body(other_body, size());
+  if (body == other_body) {
+    throw InvalidOption("motion: body " + std::to_string(body) +
+                        " is never compared with itself, so this pair cannot be excluded; give two bodies");
+  }
+  const detail::BodyPair excluded{.body = std::min(body, other_body), .other = std::max(body, other_body)};
+  std::erase_if(bodies_->pairs,
+                [&](const detail::BodyPair& p) { return p.body == excluded.body && p.other == excluded.other; });
+}
+
+void MotionCertifier::exclude_obstacles(std::size_t body) {
+  check_body(body, size());
+  std::erase_if(bodies_->pairs, [&](const detail::BodyPair& p) { return p.body == body && !p.other; });
+}
+
+Vec3d MotionCertifier::centre(std::size_t body) const {
+  check_body(body, size());
+  return bodies_->bodies[body].bounds().center();
+}
+
+CertifiedMotion MotionCertifier::certify(const RigidMotion& motion, const MotionOptions& options,
+                                         const Context& context) const {
+  return certify(std::span(&motion, 1), options, context);
+}
+
+CertifiedMotion MotionCertifier::certify(std::span<const RigidMotion> motions, const MotionOptions& options,
+                                         const Context& context) const {
+  check(options);
+  throw_if_cancelled(context);
+  const detail::RigidMotions poses(*bodies_, motions);
+  return blum::certify(MotionTests(*bodies_, poses, context), options);
+}
+
+CertifiedMotion MotionCertifier::certify(const BoundedMotion& motion, const MotionOptions& options,
+                                         const Context& context) const {
+  check(options);
+  throw_if_cancelled(context);
+  const detail::GivenMotion poses(*bodies_, motion);
+  return blum::certify(MotionTests(*bodies_, poses, context), options);
+}
+
+MotionClearance MotionCertifier::clearance(std::span<const RigidMotion> motions, double tolerance,
+                                           const Context& context) const {
+  detail::check_tolerance(tolerance);
+  throw_if_cancelled(context);
+  const detail::RigidMotions poses(*bodies_, motions);
+  std::array tests{MotionTests(*bodies_, poses, context)};
+  const detail::LeastClearance found = detail::least_clearance(tests, tolerance);
+  return {.at_least = found.at_least,
+          .at_most = found.closest ? found.closest->distance : found.at_least,
+          .time = found.time,
+          .closest = found.closest,
+          .tests = tests[0].count()};
+}
+
+std::optional<MotionContact> MotionCertifier::first_contact(std::span<const RigidMotion> motions, double tolerance,
+                                                            const Context& context) const {
+  if (!(tolerance > 0 && tolerance <= 1)) {
+    throw InvalidOption("motion: tolerance must be above 0 and at most 1, not " + exact_text(tolerance));
+  }
+  throw_if_cancelled(context);
+  const detail::RigidMotions poses(*bodies_, motions);
+  MotionTests tests(*bodies_, poses, context);
+  // Only rounding limits how close the surfaces may come without being in doubt.
+  const std::optional<Doubt> doubt = first_doubt(tests, 0, deltas_of(tests, 0));
+  if (!doubt) return std::nullopt;
+  MotionContact out{.earliest = doubt->at.from};
+  auto contact = contact_after(tests, doubt->at);
+  if (!contact) {
+    // The pair was within this distance when the search stopped.
+    out.pair = *tests.closest(doubt->pair, doubt->at.middle(), HUGE_VAL);
+    return out;
+  }
+  // Contacts before the one that was found, by bisection.
+  double before = doubt->at.from;
+  while (contact->first - before > tolerance) {
+    const double middle = before + 0.5 * (contact->first - before);
+    if (middle <= before || middle >= contact->first) break;
+    const auto pair = tests.closest(middle, 0);
+    if (pair && pair->distance == 0) {
+      contact = {middle, *pair};
+    } else {
+      before = middle;
+    }
+  }
+  out.latest = contact->first;
+  out.pair = contact->second;
   return out;
 }
 

@@ -4,10 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 #include "blum/core/error.hpp"
-#include "blum/core/exact_text.hpp"
+#include "planning/check_pose.hpp"
 
 namespace blum {
 namespace {
@@ -54,25 +53,11 @@ Mat3 rotation_about(const Vec3d& axis, double angle) {
   return out;
 }
 
-void check(const RigidTransform& pose, const char* name) {
-  constexpr double most = 1e-9, furthest = 1e70;
-  const double error = pose.rotation_error();
-  const double far = length(pose.translation);
-  if (!(error <= most)) {
-    throw InvalidOption(std::string("motion: the rotation of the pose at ") + name +
-                        " is not orthonormal to 1e-9: its error is " + exact_text(error));
-  }
-  if (!(far <= furthest)) {
-    throw InvalidOption(std::string("motion: the translation of the pose at ") + name +
-                        " must be finite and at most 1e70, not " + exact_text(far));
-  }
-}
-
 }  // namespace
 
 RigidMotion::RigidMotion(const RigidTransform& from, const RigidTransform& to, const Vec3d& centre) : centre_(centre) {
-  check(from, "time 0");
-  check(to, "time 1");
+  detail::check_pose(from, "at time 0");
+  detail::check_pose(to, "at time 1");
   if (!(length(centre) <= 1e70)) throw InvalidOption("motion: the centre must be finite and within 1e70 of the origin");
   rotation_ = closest_rotation(from.rotation);
   const Mat3 last = closest_rotation(to.rotation);
@@ -95,12 +80,12 @@ RigidTransform RigidMotion::at(double time) const {
   return out;
 }
 
-double RigidMotion::rounding(double reach) const {
+double RigidMotion::rounding(double radius) const {
   // Entries of the rotation have an error of at most 40 units of rounding (2^-53). So a point moves by at most 120
   // units of its distance from the origin of the body. Positions of the centre and sums add at most 16 units of their
   // sizes.
   constexpr double unit_of_rounding = 0x1p-53;
-  const double from_origin = reach + length(centre_);
+  const double from_origin = radius + length(centre_);
   const double in_scene = std::max(length(start_), length(end_));
   return unit_of_rounding * (240 * from_origin + 32 * in_scene);
 }

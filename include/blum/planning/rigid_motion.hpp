@@ -24,15 +24,19 @@ class RigidMotion {
   [[nodiscard]] const Vec3d& axis() const { return axis_; }
   /// Returns the angle of the whole rotation, 0 to pi, radians.
   [[nodiscard]] double angle() const { return angle_; }
-  /// Returns the way of the centre, mesh units.
-  [[nodiscard]] double way() const { return length(end_ - start_); }
-  /// Returns a bound on the way of a point of the body, mesh units per unit of time.
-  /// @param reach  distance of the point from the axis of rotation through the centre.
-  [[nodiscard]] double speed(double reach) const { return way() + angle_ * reach; }
+  /// Returns the position of the centre in the scene at a time, mesh units.
+  [[nodiscard]] Vec3d centre_at(double time) const { return start_ + velocity() * time; }
+  /// Returns the velocity of the centre, mesh units per unit of time.
+  [[nodiscard]] Vec3d velocity() const { return end_ - start_; }
+  /// Returns the angular velocity in the scene, radians per unit of time. It does not change with time.
+  [[nodiscard]] Vec3d angular_velocity() const { return rotation_ * axis_ * angle_; }
+  /// Returns a bound on the speed of a point of the body, mesh units per unit of time.
+  /// @param radius  distance of the point from the axis of rotation through the centre.
+  [[nodiscard]] double speed(double radius) const { return length(velocity()) + angle_ * radius; }
   /// Returns a bound on the difference between a point's exact position and its position by at(), mesh units. It covers
   /// rounding of the transform and of its application.
-  /// @param reach  distance of the point from the centre.
-  [[nodiscard]] double rounding(double reach) const;
+  /// @param radius  distance of the point from the centre.
+  [[nodiscard]] double rounding(double radius) const;
 
  private:
   Mat3 rotation_;  ///< at time 0

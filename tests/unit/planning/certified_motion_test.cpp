@@ -14,48 +14,19 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
-#include "blum/geometry/triangle_distance.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/random_transform.hpp"
+#include "unit/planning/support.hpp"
 
 namespace blum {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 
-TriangleMesh box(const Vec3d& size, const Vec3d& centre = {}) {
-  TriangleMesh out = make_box({.size = size});
-  for (Vec3d& v : out.vertices) v += centre;
-  return out;
-}
-
-RigidTransform moved(const Vec3d& translation) {
-  RigidTransform out;
-  out.translation = translation;
-  return out;
-}
-
-RigidTransform turned_z(double angle, const Vec3d& translation = {}) {
-  RigidTransform out;
-  out.rotation.columns[0] = {std::cos(angle), std::sin(angle), 0};
-  out.rotation.columns[1] = {-std::sin(angle), std::cos(angle), 0};
-  out.translation = translation;
-  return out;
-}
-
-/// Returns the distance of the surfaces at a time, by comparing all pairs of triangles.
-double slow_distance(const TriangleMesh& body, const TriangleMesh& obstacles, const RigidTransform& pose) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto corners = [](const TriangleMesh& mesh, const Triangle& t, const RigidTransform& at) {
-    return std::array{at(mesh.vertices[t[0]]), at(mesh.vertices[t[1]]), at(mesh.vertices[t[2]])};
-  };
-  for (const Triangle& a : body.triangles) {
-    for (const Triangle& b : obstacles.triangles) {
-      least = std::min(least, triangle_distance(corners(body, a, pose), corners(obstacles, b, {})).distance);
-    }
-  }
-  return least;
-}
+using test::box;
+using test::moved;
+using test::slow_distance;
+using test::turned_z;
 
 /// Compares an answer with distances at many times.
 void expect_true(const TriangleMesh& body, const TriangleMesh& obstacles, const RigidMotion& motion,
@@ -63,7 +34,7 @@ void expect_true(const TriangleMesh& body, const TriangleMesh& obstacles, const 
   for (int k = 0; k <= samples; ++k) {
     const double time = found.free_until * k / samples;
     if (time == found.free_until && found.verdict != MotionVerdict::free) break;
-    EXPECT_GT(slow_distance(body, obstacles, motion.at(time)), options.clearance) << "at " << time;
+    EXPECT_GT(slow_distance(body, motion.at(time), obstacles), options.clearance) << "at " << time;
   }
   if (found.verdict == MotionVerdict::free) {
     EXPECT_EQ(found.free_until, 1);
@@ -72,7 +43,7 @@ void expect_true(const TriangleMesh& body, const TriangleMesh& obstacles, const 
   }
   EXPECT_LE(found.free_until, found.time);
   ASSERT_TRUE(found.closest);
-  const double there = slow_distance(body, obstacles, motion.at(found.time));
+  const double there = slow_distance(body, motion.at(found.time), obstacles);
   EXPECT_EQ(found.closest->distance, there);
   if (found.verdict == MotionVerdict::colliding) {
     EXPECT_EQ(there, 0);

@@ -74,7 +74,7 @@ TEST(RigidMotion, MovesTheCentreAlongALine) {
     const RigidMotion motion(from, to, centre);
     const double time = random.uniform();
     EXPECT_LE(length(motion.at(time)(centre) - (from(centre) * (1 - time) + to(centre) * time)), 1e-13);
-    EXPECT_NEAR(motion.way(), length(to(centre) - from(centre)), 1e-13);
+    EXPECT_NEAR(length(motion.velocity()), length(to(centre) - from(centre)), 1e-13);
   }
 }
 
