@@ -40,11 +40,11 @@ Quaternion quaternion_of(const StatedPath::Pose& pose) {
 
 /// Motion of one body between two waypoints.
 struct StatedMotion {
-  Quaternion start;   ///< rotation at time 0
-  Vec3d axis;         ///< of the rotation, in the body
-  double angle = 0;   ///< of the whole rotation, 0 to pi
-  Vec3d centre;       ///< in the body
-  Vec3d from, to;     ///< of the centre, in the scene
+  Quaternion start;  ///< rotation at time 0
+  Vec3d axis;        ///< of the rotation, in the body
+  double angle = 0;  ///< of the whole rotation, 0 to pi
+  Vec3d centre;      ///< in the body
+  Vec3d from, to;    ///< of the centre, in the scene
 
   StatedMotion(const StatedPath::Pose& first, const StatedPath::Pose& last, const Vec3d& centre_)
       : start(quaternion_of(first)), centre(centre_) {
@@ -215,8 +215,7 @@ bool visit_near(const PlacedMesh& a, const PlacedMesh& b, double within, const V
       }
       continue;
     }
-    const bool splits_first =
-        second.count > 0 || (first.count == 0 && a.boxes[i].diagonal() > b.boxes[j].diagonal());
+    const bool splits_first = second.count > 0 || (first.count == 0 && a.boxes[i].diagonal() > b.boxes[j].diagonal());
     for (const std::uint32_t child : {0U, 1U}) {
       stack.push_back(splits_first ? std::pair(first.first + child, j) : std::pair(i, second.first + child));
     }
@@ -241,7 +240,8 @@ class PathVerifier {
     for (const MeshView& mesh : obstacles) obstacles_.emplace_back(mesh, context);
     for (const PathMesh& mesh : obstacles_) {
       const std::vector<Vec3d> at(mesh.points().begin(), mesh.points().end());
-      PlacedMesh& placed = placed_obstacles_.emplace_back(PlacedMesh{.mesh = &mesh, .first = at, .middle = at, .last = at});
+      PlacedMesh& placed =
+          placed_obstacles_.emplace_back(PlacedMesh{.mesh = &mesh, .first = at, .middle = at, .last = at});
       placed.set_boxes();
       largest_ = std::max(largest_, mesh.largest());
     }

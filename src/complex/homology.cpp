@@ -20,8 +20,7 @@ namespace {
 using Face = std::array<std::uint32_t, 3>;
 
 /// Returns each triangle once, in ascending order and with ascending corners. One pass sorts the triangles by their
-/// first corner. Then the triangles of each first corner are sorted separately, with checks for cancellation in
-/// between.
+/// first corner. Then those of each first corner are sorted separately, with checks for cancellation in between.
 std::vector<Face> distinct_triangles(const ComplexView& complex, const Context& context) {
   std::vector<std::size_t> first(complex.vertex_count + 1, 0);
   const auto rising = [](Face face) {
@@ -109,8 +108,7 @@ class Peeling {
  private:
   const Columns& columns_;
   std::vector<std::uint32_t> count_;
-  std::vector<std::uint64_t> sum_;  ///< for each row: sum of the indices of its remaining columns; if one column
-                                    ///< remains, this is its index
+  std::vector<std::uint64_t> sum_;  ///< for each row: sum of the indices of its columns; if one is left, its index
   std::vector<std::uint32_t> free_;
 };
 

@@ -51,9 +51,8 @@ struct VertexPairs {
     });
   }
 
-  /// Calls use(a, b, number) as for_each_pair() does, on several threads. Each thread reads all pairs, and uses those
-  /// whose smaller vertex is in its range. Reading all pairs in order costs less than writing at random positions of
-  /// the lists.
+  /// Does the same as for_each_pair(), on several threads. Each thread reads all pairs, and uses those whose smaller
+  /// vertex is in its range. Reading all pairs in order costs less than writing at random positions of the lists.
   template <class Use>
   static void for_each_of_own(const ComplexView& complex, const Context& context, const Use& use) {
     constexpr std::size_t most_ranges = 8;

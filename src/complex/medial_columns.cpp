@@ -99,8 +99,7 @@ std::string problem_of_values(const Complex& axis) {
   return {};
 }
 
-/// Returns the result of a check. If a column is missing or has a wrong type, returns the error message about this
-/// column.
+/// Returns the result of a check. If a column is missing or has another type, returns the message of that error.
 template <class Check>
 std::string problem_in(const Check& check) {
   try {

@@ -66,8 +66,7 @@ void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& site
   invert_signs(context, field);
 }
 
-/// Negates the distance of each node whose closest site faces away from the node. The sites must be stored in the
-/// field.
+/// Negates the distance of each node whose closest site faces away from it. The sites must be stored in the field.
 /// @return  nodes without a site, ascending.
 std::vector<std::size_t> apply_pseudonormals(const MeshView& mesh, const SiteTable& sites, const Context& context,
                                              Field& field) {
@@ -168,8 +167,7 @@ SecondSearch::SecondSearch(const MeshView& mesh, const SiteTable& sites, const S
 
 void SecondSearch::offer(const NearestPrimitive& found, const Vec3d& query, const SecondLabels::OfSite& first,
                          SecondSite& best) const {
-  // Corners of the primitive that are not excluded. The remaining corners form the whole primitive, an edge, a vertex
-  // or nothing.
+  // Corners of the primitive that are not excluded. They form the whole primitive, an edge, a vertex or nothing.
   std::array<std::uint32_t, 3> left{};
   std::size_t count = 0;
   bool is_whole = true;

@@ -18,8 +18,7 @@ namespace blum {
 
 /// Labels that express both rules of the second order. Every vertex has one label; a site has the labels of its
 /// vertices. A site may be second only if it shares no label with the first (closest) site. Under the rule "no common
-/// vertex", the label of a vertex is its index. Under the rule "other object", the label is the number of the vertex's
-/// object.
+/// vertex", the label of a vertex is its index. Under the rule "other object", it is the object.
 ///
 /// If all sites with certain labels are removed, the rest is still a mesh: every remaining site keeps its border.
 class SecondLabels {

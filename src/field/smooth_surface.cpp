@@ -36,9 +36,8 @@ struct CornerCase {
   std::array<std::uint8_t, 8> patch_of{};  ///< Per voxel: index of its patch; none if the voxel is selected.
   /// Per patch: sum of its voxels' directions from the corner, (+-1, +-1, +-1) each.
   std::array<std::array<std::int8_t, 3>, 8> way{};
-  /// Double edges: bit e stands for the edge from the corner in the positive direction of axis e. A bit is set if
-  /// exactly two voxels around the edge are selected, and they are diagonally opposite. The surface passes such an edge
-  /// twice.
+  /// Double edges: bit e stands for the edge from the corner in the positive direction of axis e. It is set if exactly
+  /// two voxels around the edge are selected, and they are diagonally opposite. The surface passes such an edge twice.
   std::uint8_t double_edges = 0;
   /// True if exactly two voxels are selected, and they are opposite across the corner. The patch is then a ring around
   /// the corner.

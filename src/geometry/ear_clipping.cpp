@@ -244,8 +244,7 @@ class EarClipper {
       if (--work_left_ < 0) return false;
       if (links_[twin].next == gone) continue;
       // The polygon passes through the position of the ear's tip again: outside of the ear, through it, or along both
-      // of its edges. If it passes along both edges, the tip alone does not determine on which side of the edges the
-      // inside is.
+      // of its edges. In the last case the tip alone does not determine on which side of them the inside is.
       const Side before = side_of(points_[links_[twin].previous], a, b, c);
       const Side after = side_of(points_[links_[twin].next], a, b, c);
       if (before == Side::between || after == Side::between) return false;

@@ -134,8 +134,7 @@ std::optional<RoundedLabels> rounded(std::span<const T> values, std::span<const 
   return RoundedLabels{std::move(out), {WarningCode::rounded, text}};
 }
 
-/// Returns ", for example V, which is not a whole number" for the first fractional value V; empty if all values are
-/// whole.
+/// Returns ", for example V, which is not a whole number" for the first such value, or an empty text.
 std::string fraction_text(const VoxelImageView& image) {
   return std::visit(
       [&]<class T>(const std::span<const T>& values) -> std::string {

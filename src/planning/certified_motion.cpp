@@ -80,7 +80,7 @@ CertifiedMotion certify(MotionTests tests, const MotionOptions& options) {
 void detail::Bodies::name_obstacle(std::uint32_t primitive, MotionPair& pair) const {
   const Ends& all = ends.back();
   std::size_t local = primitive;
-  std::size_t Ends::*kind = &Ends::triangles;
+  std::size_t Ends::* kind = &Ends::triangles;
   if (local >= all.triangles) {
     local -= all.triangles;
     kind = &Ends::segments;
@@ -116,7 +116,8 @@ MotionCertifier::MotionCertifier(std::span<const MeshView> bodies, std::span<con
   if (!obstacles.empty()) bodies_->obstacles.emplace(join(obstacles, bodies_->ends), "obstacles", context);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (bodies_->obstacles) bodies_->pairs.push_back({.body = k});
-    for (std::size_t other = k + 1; other < bodies.size(); ++other) bodies_->pairs.push_back({.body = k, .other = other});
+    for (std::size_t other = k + 1; other < bodies.size(); ++other)
+      bodies_->pairs.push_back({.body = k, .other = other});
   }
 }
 

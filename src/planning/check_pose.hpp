@@ -16,12 +16,12 @@ inline void check_pose(const RigidTransform& pose, const std::string& which) {
   const double error = pose.rotation_error();
   const double far = length(pose.translation);
   if (!(error <= most)) {
-    throw InvalidOption("motion: the rotation of the pose " + which +
-                        " is not orthonormal to 1e-9: its error is " + exact_text(error));
+    throw InvalidOption("motion: the rotation of the pose " + which + " is not orthonormal to 1e-9: its error is " +
+                        exact_text(error));
   }
   if (!(far <= furthest)) {
-    throw InvalidOption("motion: the translation of the pose " + which +
-                        " must be finite and at most 1e70, not " + exact_text(far));
+    throw InvalidOption("motion: the translation of the pose " + which + " must be finite and at most 1e70, not " +
+                        exact_text(far));
   }
 }
 

@@ -99,7 +99,7 @@ class MotionTests {
  private:
   struct Bounds {
     double speed = 0, error = 0, size = 0;
-    double acceleration = 0;  ///< sum of the bodies
+    double acceleration = 0;                                           ///< sum of the bodies
     std::optional<std::pair<std::uint32_t, std::uint32_t>> last = {};  ///< primitives that were close: other, body
   };
   void move_to(double time);

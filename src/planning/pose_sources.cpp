@@ -19,8 +19,7 @@ void check_count(std::size_t found, std::size_t bodies, const char* things) {
 
 }  // namespace
 
-RigidMotions::RigidMotions(const Bodies& data, std::span<const RigidMotion> motions)
-    : motions_(motions) {
+RigidMotions::RigidMotions(const Bodies& data, std::span<const RigidMotion> motions) : motions_(motions) {
   check_count(motions.size(), data.bodies.size(), "motions");
   for (std::size_t k = 0; k < motions.size(); ++k) {
     const RigidMotion& motion = motions[k];

@@ -29,8 +29,7 @@ std::array<Vec3d, 12> icosahedron_corners() {
            {-g, 0, 1}}};
 }
 
-/// Numbering of the vertices: first the 12 corners, then the inner points of the 30 edges, then the inner points of the
-/// 20 faces.
+/// Order of the vertices: the 12 corners, then the inner points of the 30 edges, then the inner points of the 20 faces.
 class Layout {
  public:
   explicit Layout(std::uint32_t frequency) : frequency_(frequency) {

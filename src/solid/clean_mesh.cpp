@@ -192,8 +192,7 @@ CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& cont
 
 namespace {
 
-/// Cleans a mesh that has triangles without area. Their sides are flipped first, because triangles without area could
-/// count as crossings.
+/// Cleans a mesh with flat triangles. It flips their sides first, because flat triangles could count as crossings.
 CleanedMesh clean_without_flat(const MeshView& all, double tolerance, const Context& context) {
   const OrientedMesh oriented = oriented_mesh(all, context);
   std::size_t flips = 0;

@@ -46,8 +46,7 @@ class PointLocation {
   std::optional<WindingNumber> winding_;  ///< set for meshes that are not closed
 };
 
-/// Largest number of rays to try. One ray is nearly always enough, because a ray in a random direction almost never
-/// meets an edge.
+/// Largest number of rays to try. One is nearly always enough: a ray in a random direction almost never meets an edge.
 constexpr std::uint32_t most_rays = 64;
 
 TriangleMesh joined(const std::vector<SolidBody>& bodies) {

@@ -118,13 +118,12 @@ struct Description<GeometryCheck> {
 /// If a point of the solid is at distance r from the surface, the ball of radius r around it lies in the solid. The
 /// check covers each edge with such balls, so every point of the edge is checked.
 ///
-/// An edge may cut a corner of its body if the edge can be pushed into the solid. An edge that is pushed may leave the
-/// body by at most 1/64 of the diagonal of the body's box. For images, an edge may leave the body by half the diagonal
-/// of a voxel if that is larger. To push an edge, the check moves the edge's outermost point into the solid, through
-/// the closest point of the surface. The two halves of the edge are then treated in the same way, until the whole edge
-/// lies in the solid. At most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is.
-/// If the solid consists of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is
-/// pushed.
+/// An edge may cut a corner of its body if the edge can be pushed into the solid. Such an edge may leave the body by at
+/// most 1/64 of the diagonal of the body's box. For images, the limit is half the diagonal of a voxel if that is
+/// larger. To push an edge, the check moves the edge's outermost point into the solid, through the closest point of the
+/// surface. The two halves of the edge are then treated in the same way, until the whole edge lies in the solid. At
+/// most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is. If the solid consists
+/// of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is pushed.
 struct EdgeCheck {
   std::size_t edges = 0;    ///< Checked edges, each counted once.
   std::size_t pushed = 0;   ///< Edges that cut a corner of their body, but can be pushed into it.
@@ -135,7 +134,6 @@ struct EdgeCheck {
   Vec3d where;             ///< Point at the distance `outside_by`, mesh units.
   std::size_t across = 0;  ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
   Vec3d across_at;         ///< Position of the first crossing of a gap, mesh units.
-  /// Edges that possibly cross a gap. If there are such edges, only Betti numbers are proven.
   std::size_t undecided = 0;
   double tolerance = 0;  ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
   bool holds = false;    ///< True if no edge is outside or crosses a gap.
@@ -146,7 +144,7 @@ struct Description<EdgeCheck> {
   static constexpr std::string_view name = "EdgeCheck";
   static constexpr std::string_view doc = "Check that edges lie in the solid between their ends";
   static constexpr std::tuple members{
-      Member{"edges", &EdgeCheck::edges, "", "number of checked edges"},
+      Member{"edges", &EdgeCheck::edges, "", "number of checked edges; each edge counts once"},
       Member{"pushed", &EdgeCheck::pushed, "", "edges that cut a corner, and can be pushed into the solid"},
       Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "largest distance of a pushed edge from the solid"},
       Member{"outside", &EdgeCheck::outside, "", "edges that leave the solid and cannot be pushed into it"},
@@ -200,7 +198,7 @@ struct Description<HomologyCheck> {
              "edges that touch the surface, so that their linking numbers are undecided"},
       Member{"proven", &HomologyCheck::proven, "", "strongest result that is proven in every body"},
       Member{"holds", &HomologyCheck::holds, "",
-             "true if the check ran and nothing contradicts equal homology, even if only a weak result is proven"},
+             "true if the check ran and nothing contradicts equal homology, even if little is proven"},
       Member{"shown", &HomologyCheck::shown, "",
              "the proven result, and the reason why nothing stronger is proven, in one sentence"},
   };
@@ -251,86 +249,81 @@ struct Description<BallUnionCheck> {
 
 /// Result of the check that an axis lies in the middle of its solid, and that no part of the axis is missing.
 ///
-/// Judged cells are the triangles, and the edges of curves, whose separation angle in the axis is above theta. If the
-/// solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All other
-/// cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
+/// Judged cells are triangles and edges of curves. Their separation angle, as stored in the axis, is above theta. If
+/// the solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All
+/// other cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
 ///
 /// The check uses sample points, which are the same in every run. There are at most 8,192 points of sheets, 2,048
 /// points of curves, 4,096 vertices and 16,384 points of the solid. All small sheets together have up to 4,096 further
 /// points. All bodies together have up to 32,768 further points.
 ///
-/// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If the side is
-/// above an eighth of the solid's longest side, the unit is an eighth of the solid's longest side. If the axis reports
-/// no voxel side, the unit is 1/32 of the diagonal of the solid. If the solid consists of voxels, the unit is at least
-/// half and at most the whole diagonal of a voxel. The rules also use the deviation that the axis reports
-/// (DecimatedAxis::deviation). A deviation above 1/64 of the diagonal of the solid is lowered to this value.
+/// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If this side is
+/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no side, the unit is 1/32
+/// of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
+/// diagonal of a voxel. The axis also reports its deviation (DecimatedAxis::deviation), which counts as at most 1/64 of
+/// the diagonal of the solid.
 ///
-/// The first rule judges how far the axis is from the middle between two walls, which are parts of the solid's surface.
-/// At a point of the axis, the ball that touches the closest wall is grown until it touches another wall. The distance
-/// of the point from the middle is its distance from the bisector of the two walls. If the touching points differ by
-/// less than 10 degrees (images: 20), seen from the ball's centre, they belong to the same wall.
+/// The first rule judges how far the axis is from the middle. At a point of the axis, the ball that touches the closest
+/// wall is grown until it touches another wall. The distance of the point from the middle is its distance from the
+/// bisector of the two walls. Two walls count as one wall if the angle between their touching points, at the ball's
+/// centre, is below 10 degrees (images: 20).
 ///
 /// Three limits apply to the distances of the points from the middle. For at least 95 % of the points, the distance
-/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 % of the points, the distance must
-/// also be at most a quarter of the radius of the point's ball. For at least half of the points, the distance must be
-/// at most an eighth of this radius, and at most `close_allowance`. The length `close_allowance` is a third of a voxel,
-/// or the deviation plus a twelfth of a voxel if that is more.
+/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 %, it must also be at most a quarter
+/// of the radius of the point's ball. For at least half, it must be at most an eighth of this radius, and at most
+/// `close_allowance`. This last length is a third of a voxel, or the deviation plus a twelfth of a voxel if that is
+/// more.
 ///
 /// Two rules raise the limits that depend on the radius. If a corner of the point's cell has a larger radius than the
-/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So the radius limits are at least a
-/// tenth of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the
-/// limits that depend on the radius do not apply.
+/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So these limits are at least a tenth
+/// of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the limits
+/// that depend on the radius do not apply.
 ///
 /// Unless the solid consists of voxels, sheets are also judged one by one. At most half of the points of a sheet may be
 /// further from the middle than the allowance. All sheets with at least 12 sample points are judged. Sheets with fewer
-/// sample points are judged only if their area is at least 4 square voxels. The 341 largest sheets with few sample
-/// points get 12 further points each; smaller sheets are not judged.
+/// sample points are judged only if their area is at least 4 square voxels. The 341 largest of these sheets get 12
+/// further points each; smaller ones are not judged.
 ///
 /// The second rule judges vertices with one footprint. Vertices of judged cells should have two footprints, but some
 /// have only one, at ends of sheets and in thin walls. A vertex with one footprint must lie within the allowance from
 /// the middle, and within a quarter of its ball's radius from the middle. A vertex is exempt if one of its judged cells
-/// has a corner with a radius below one voxel. At most a tenth of the vertices of judged cells, or 16 vertices if that
-/// is more, may exceed this limit.
+/// has a corner with a radius below one voxel. This limit may be exceeded by at most a tenth of the vertices of judged
+/// cells, or by 16 vertices if that is more.
 ///
-/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angles of this cell and
-/// of its other corners are above theta and above 20 degrees (images: 40). Let d be the distance that is allowed
-/// between the axis and the centre of a ball with the vertex's radius (see below). The distance of the vertex from the
-/// middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above 256 square
-/// voxels. For such an axis, at most 60 % of the vertices with a radius above the allowance may have only one
-/// footprint.
+/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of such a cell,
+/// and the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that
+/// is allowed between the axis and the centre of a ball with the vertex's radius (see below). The distance of the
+/// vertex from the middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above
+/// 256 square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
 ///
 /// The third rule finds missing parts of the axis. Balls are grown from random points of the solid. In each body,
-/// further balls are grown from points next to the body's surface. If the solid consists of voxels, the further balls
-/// are grown from points in the body's box instead. If theta is unknown, missing parts are not checked.
+/// further balls are grown from points next to the body's surface. If the solid consists of voxels, these points lie in
+/// the body's box instead. If theta is unknown, missing parts are not checked.
 ///
-/// A ball counts if it touches two walls at points that are at least lambda apart, and its separation angle is large.
-/// The separation angle of a ball is the angle between the two points, seen from the ball's centre. This angle must be
-/// at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is less. In this rule, a theta below 10
-/// degrees (images: 20) is raised to this value. If the distance between the two points is below 4 voxels plus lambda,
-/// the angle must also be at least 80 degrees. If the solid consists of voxels, balls whose two points are closer than
-/// 4 voxels plus lambda never count.
+/// A ball counts if it touches two walls at points at least lambda apart, and the angle between these points, at its
+/// centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is
+/// less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the two
+/// points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls with
+/// such close points never count.
 ///
 /// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
 /// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
 /// voxels if that is more.
 ///
-/// The limit for the distance must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %).
-/// The further balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more
-/// further balls that count, the limit must hold for half of these balls. If the limit fails for more than 10 % of the
-/// further balls of all bodies, it must hold for 90 % of them in each body. Three balls may always exceed the limit, in
-/// the whole solid and in each body.
+/// This condition must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %). The further
+/// balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more further balls
+/// that count, the condition must hold for half of them. If it fails for more than 10 % of these balls in all bodies
+/// together, it must hold for 90 % of them in each body. In any case, the condition may fail for three balls.
 ///
-/// If borders were fitted, the check also judges parts of the solid that are thinner than a voxel. The limits for these
-/// parts depend on their radius. A ball counts if its radius is at most two thirds of a voxel, and its angle at least
-/// 150 degrees and `sought_angle`. No ball next to a ball that counts may be larger by more than 5 %. For all balls in
-/// thin parts except one, the axis must come within three radii of the ball's centre. So the check finds a missing end
-/// of a wire if this end is longer than three radii. Balls for this rule are also grown from vertices of the surface.
+/// If borders were fitted, parts thinner than a voxel are also judged by their own radius. A ball counts if its radius
+/// is at most two thirds of a voxel, and its angle at least 150 degrees and `sought_angle`. No ball beside it may be
+/// larger by more than 5 %. The axis must come within three radii of its centre, except for one ball. So a missing end
+/// of a wire is found if it is longer than that. Such balls are also grown from vertices of the surface.
 ///
-/// In polyhedra, the check also finds single sheets that are missing. For this rule, walls are flat or smooth parts of
-/// the surface. A pair of walls is judged if more than 8 balls touch both walls. More than 6 of the balls must have
-/// centres that are 2 voxels apart from each other. The separation angle of these balls is at least theta plus 10
-/// degrees, or halfway from theta to 180 degrees if that is less. The radius of these balls is above
-/// `missing_allowance`. Half of the balls must be next to a cell of the axis that lies between the two walls
+/// In polyhedra, single sheets must not be missing either. Walls are flat or smooth parts of the surface. Two walls
+/// count if more than 8 balls touch both. More than 6 of the balls must have centres that are 2 voxels apart from each
+/// other. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180 degrees.
+/// Their radius is above `missing_allowance`. Half of them must be next to a cell of the axis between these walls
 /// (docs/theory/certificate.md).
 ///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
@@ -405,13 +398,12 @@ struct Description<MedialCheck> {
              "share of the area of triangles that exist for homotopy alone, and are not judged"},
       Member{"samples", &MedialCheck::samples, "", "examined points of judged sheets and curves"},
       Member{"medial_share", &MedialCheck::medial_share, "",
-             "share of the samples whose distance from the middle is at most the allowance, by area"},
+             "share of the samples at most the allowance from the middle, by area"},
       Member{"near_share", &MedialCheck::near_share, "",
-             "share of the samples whose distance from the middle is also at most a quarter of their distance to the "
-             "walls"},
-      Member{"close_share", &MedialCheck::close_share, "",
-             "share of the samples whose distance from the middle is at most close_allowance, and at most an eighth of "
-             "their distance to the walls"},
+             "share of the samples that are also at most a quarter of the distance to the walls from the middle"},
+      Member{
+          "close_share", &MedialCheck::close_share, "",
+          "share of the samples at most close_allowance, and an eighth of the distance to the walls, from the middle"},
       Member{"close_allowance", &MedialCheck::close_allowance, "mesh units",
              "a third of a voxel, or the deviation plus a twelfth of a voxel if that is more"},
       Member{"off_by", &MedialCheck::off_by, "mesh units", "largest distance of a sample from the middle"},
@@ -420,7 +412,7 @@ struct Description<MedialCheck> {
       Member{"sheets_off", &MedialCheck::sheets_off, "",
              "judged sheets with more than half of their points outside the allowance"},
       Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units",
-             "point outside the allowance in the first sheet of sheets_off"},
+             "point outside the allowance in the first such sheet"},
       Member{"sought_angle", &MedialCheck::sought_angle, "degrees",
              "smallest angle of the medial balls that count; 0 if missing parts were not checked"},
       Member{"missing_allowance", &MedialCheck::missing_allowance, "mesh units",
@@ -437,11 +429,11 @@ struct Description<MedialCheck> {
       Member{"bodies_missed", &MedialCheck::bodies_missed, "",
              "judged bodies in which too many balls have no point of the axis near their centre"},
       Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "",
-             "missed_share of the balls of one body: the body with the largest share"},
+             "missed_share of the balls of one body, for the body where it is largest"},
       Member{"missed_in_body_by", &MedialCheck::missed_in_body_by, "mesh units",
-             "largest distance of a ball's centre from the axis, in the body of missed_share_of_body"},
+             "largest distance of the centre of one of that body's balls from the axis"},
       Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units",
-             "centre of the ball with the distance missed_in_body_by"},
+             "centre of the ball at the distance missed_in_body_by"},
       Member{"thin_balls", &MedialCheck::thin_balls, "", "balls in the middle of parts thinner than a voxel"},
       Member{"thin_missed", &MedialCheck::thin_missed, "",
              "balls among thin_balls that are more than three of their radii from the axis"},
@@ -451,7 +443,7 @@ struct Description<MedialCheck> {
              "centre of the ball at the distance thin_missed_by"},
       Member{"pairs_missed", &MedialCheck::pairs_missed, "", "pairs of walls between which a sheet is missing"},
       Member{"pair_missed_at", &MedialCheck::pair_missed_at, "mesh units",
-             "centre of a ball between the first missed pair of walls, where the axis is missing"},
+             "centre of a ball between the first such pair, where the axis is missing"},
       Member{"judges_missing", &MedialCheck::judges_missing, "", "true if enough balls count to judge missing parts"},
       Member{"holds", &MedialCheck::holds, "", "true if no limit is exceeded"},
   };
@@ -526,7 +518,7 @@ struct Description<LabelCheck> {
   static constexpr std::string_view doc = "Check that roles and sheets fit the triangles";
   static constexpr std::tuple members{
       Member{"doubled", &LabelCheck::doubled, "",
-             "edges and triangles with the same vertices as another edge or triangle"},
+             "edges with the same vertices as another edge, and likewise triangles"},
       Member{"inner_listed", &LabelCheck::inner_listed, "", "listed edges that belong to exactly two triangles"},
       Member{"unlisted", &LabelCheck::unlisted, "", "edges of rims and seams that are not listed"},
       Member{"edge_roles", &LabelCheck::edge_roles, "", "edges with a wrong role"},
@@ -600,11 +592,10 @@ struct Description<AngleCheck> {
 };
 
 /// Result of the check of sheets against the walls of a polyhedron (docs/theory/certificate.md). A part of a sheet is
-/// large if its area is at least 4 square voxels and it has at least 8 triangles. Triangles belong to the same part if
-/// the edge between them bends by less than 45 degrees, or does not touch a seam. All large parts of a sheet must lie
-/// between the same pair of walls. At most 5 % of `vertices`, or 3 vertices if that is more, may be `wrong`. Files of
-/// Voronoi diagrams may have columns of patches. In files with these columns, each pair of sites, and each sheet of
-/// patches, must have one pair of patches.
+/// large if it has 4 square voxels and 8 triangles or more. Edges that bend by less than 45 degrees, or do not touch a
+/// seam, join triangles to parts. Large parts of a sheet must not lie between different pairs of walls. At most 5 % of
+/// `vertices` may be `wrong`, or 3 if that is more. Files of Voronoi diagrams may have columns of patches. Then each
+/// pair of sites, and each sheet of patches, must have one pair of patches.
 struct SheetCheck {
   std::size_t sheets = 0;     ///< Sheets with two large parts that are connected only through edges next to seams.
   std::size_t two_pairs = 0;  ///< Sheets among `sheets` between two pairs of walls; the largest accepted number is 0.
@@ -620,15 +611,13 @@ struct Description<SheetCheck> {
   static constexpr std::string_view name = "SheetCheck";
   static constexpr std::string_view doc = "Check that sheets lie between single pairs of walls";
   static constexpr std::tuple members{
-      Member{"sheets", &SheetCheck::sheets, "",
-             "sheets with two large parts that are connected only through edges next to seams"},
-      Member{"two_pairs", &SheetCheck::two_pairs, "", "sheets counted in 'sheets' that lie between two pairs of walls"},
+      Member{"sheets", &SheetCheck::sheets, "", "sheets with two large parts that only edges next to seams join"},
+      Member{"two_pairs", &SheetCheck::two_pairs, "", "such sheets that lie between two pairs of walls"},
       Member{"two_pairs_at", &SheetCheck::two_pairs_at, "mesh units", "point in the first sheet of two pairs of walls"},
       Member{"vertices", &SheetCheck::vertices, "",
              "vertices inside a part of a sheet for which the file states one pair of sites"},
-      Member{"wrong", &SheetCheck::wrong, "",
-             "vertices counted in 'vertices' with a footprint on neither of the two sites"},
-      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first vertex counted in 'wrong'"},
+      Member{"wrong", &SheetCheck::wrong, "", "such vertices with a footprint on neither of these sites"},
+      Member{"wrong_at", &SheetCheck::wrong_at, "mesh units", "position of the first such vertex"},
       Member{"holds", &SheetCheck::holds, "", "true if no limit is exceeded"},
   };
 };
@@ -651,9 +640,8 @@ struct CertificateOptions {
   std::optional<double> lambda = {};     ///< Mesh units.
   std::optional<double> spacing = {};    ///< Side of a voxel, mesh units.
   std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units.
-  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). If true, MedialCheck also judges parts
-  /// thinner than a voxel, by the radius in these parts. If false, the axis may stop two voxels short of its exact
-  /// border.
+  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). Then MedialCheck also judges parts
+  /// thinner than a voxel, by the radius there. Otherwise, borders may end up to two voxels early.
   bool fitted = false;
 };
 
@@ -677,7 +665,7 @@ struct Description<CertificateOptions> {
       Member{"spacing", &CertificateOptions::spacing, "mesh units", "side of a voxel that the axis reports",
              Range::positive()},
       Member{"deviation", &CertificateOptions::deviation, "mesh units",
-             "deviation that the axis reports: largest change by the removal of vertices", Range::at_least(0)},
+             "largest change by removed vertices that the axis reports", Range::at_least(0)},
       Member{"fitted", &CertificateOptions::fitted, "", "true if the axis reports that its borders were fitted"},
   };
 };
@@ -688,8 +676,7 @@ struct Certificate {
   BettiNumbers solid{};         ///< Sum over all bodies, computed from the solid's boundary or voxels.
   BettiNumbers axis{};          ///< Betti numbers of the complex, by homology().
   std::optional<double> voxel;  ///< Shortest side of a voxel, mesh units; unset unless the solid consists of voxels.
-  /// One check for each body; the topology must agree in every body. Without CertificateOptions::positions, one check
-  /// for the whole solid.
+  /// One check for each body; all must agree. Without CertificateOptions::positions, one check for the whole solid.
   std::vector<BodyCheck> bodies;
   bool topology_holds = false;
   GeometryCheck geometry;
@@ -717,8 +704,9 @@ struct Description<Certificate> {
       Member{"solid_betti", &Certificate::solid, "", "components, tunnels, voids of the solid: the sum of its bodies"},
       Member{"axis_betti", &Certificate::axis, "", "components, tunnels, voids of the axis"},
       Member{"voxel", &Certificate::voxel, "mesh units", "shortest side of a voxel if the solid is made of voxels"},
-      Member{"bodies", &Certificate::bodies, "",
-             "one check for each body; one check for the whole solid if positions were not checked"},
+      Member{
+          "bodies", &Certificate::bodies, "",
+          "one check for each body, and all must agree; one check for the whole solid if positions were not checked"},
       Member{"topology_holds", &Certificate::topology_holds, "",
              "true if components, tunnels and voids agree in all bodies"},
       Member{"geometry", &Certificate::geometry, "", "check of the vertices"},
@@ -748,8 +736,7 @@ struct Description<MeshSolidRule> {
   static constexpr std::string_view name = "MeshSolidRule";
   static constexpr std::string_view doc = "Rule that defines the solid of a mesh";
   static constexpr std::tuple members{
-      Member{"rule", &MeshSolidRule::rule, "",
-             "rule: the volume bounded by the shells, or the points with a winding number above 1/2"},
+      Member{"rule", &MeshSolidRule::rule, "", "volume bounded by the shells, or winding number above 1/2"},
       Member{"reason", &MeshSolidRule::reason, "", "reason for this rule, in one sentence"},
   };
 };

@@ -28,18 +28,18 @@ struct StatedPath {
     double from = 0, to = 1;  ///< times, 0 to 1
     double clearance = 0;     ///< mesh units
   };
-  std::vector<Vec3d> centres;                ///< For each body: its centre, in its coordinates.
-  std::vector<std::vector<Pose>> poses;      ///< For each waypoint: the pose of each body.
-  double clearance = 0;                      ///< Stated clearance of the whole path, mesh units.
-  std::vector<Interval> intervals;           ///< Stated proof. If empty, the check finds its own.
+  std::vector<Vec3d> centres;            ///< For each body: its centre, in its coordinates.
+  std::vector<std::vector<Pose>> poses;  ///< For each waypoint: the pose of each body.
+  double clearance = 0;                  ///< Stated clearance of the whole path, mesh units.
+  std::vector<Interval> intervals;       ///< Stated proof. If empty, the check finds its own.
 };
 
 /// Result of the check of a path.
 struct PathCertificate {
-  bool holds = false;      ///< True if the path is proven to keep its clearance, and all stated intervals theirs.
-  double clearance = 0;    ///< The clearance that was checked, mesh units.
-  std::size_t edges = 0;   ///< Number of motions between waypoints.
-  std::size_t tests = 0;   ///< Number of times at which distances were compared.
+  bool holds = false;     ///< True if the path is proven to keep its clearance, and all stated intervals theirs.
+  double clearance = 0;   ///< The clearance that was checked, mesh units.
+  std::size_t edges = 0;  ///< Number of motions between waypoints.
+  std::size_t tests = 0;  ///< Number of times at which distances were compared.
   std::vector<std::string> mismatches;  ///< The reasons, if the path is not certified.
 };
 

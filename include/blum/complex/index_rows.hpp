@@ -14,8 +14,7 @@ namespace blum {
 class IndexRows {
  public:
   IndexRows() = default;
-  /// @param first  start of each row in `items`, and the end of the last row. The size of `first` is the number of
-  ///               cells plus 1.
+  /// @param first  start of each row in `items`, and the end of the last row. Its size is the number of cells plus 1.
   IndexRows(std::vector<std::size_t> first, std::vector<std::uint32_t> items)
       : first_(std::move(first)), items_(std::move(items)) {}
 

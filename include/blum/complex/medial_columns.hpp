@@ -42,9 +42,8 @@ namespace medial_columns {
 
 /// Vertices, float64: exact distance to the surface, mesh units.
 inline constexpr std::string_view radius = "radius";
-/// Vertices, 3 x float64: the two footprints. Footprint 0 is the closest point of the surface. Footprint 1 is the
-/// closest point of another part of the surface that is about equally close. If only one part is close, both columns
-/// contain the same point.
+/// Vertices, 3 x float64: the closest point of the surface, and the closest point of the other wall. If only one wall
+/// is near, both columns contain the same point.
 inline constexpr std::array<std::string_view, 2> footprints{"footprint_0", "footprint_1"};
 /// Vertices, int32: the sites of the input mesh, or voxels of the input image, that contain the footprints; -1 if
 /// unknown.
@@ -62,13 +61,11 @@ inline constexpr std::string_view sheet = "sheet";
 /// Additional columns of axes from Voronoi diagrams with patches (add_patch_columns()). Triangles, int32: the patches
 /// on the two sides, the smaller number first. The two numbers are equal if both sides belong to the same patch.
 inline constexpr std::array<std::string_view, 2> patches{"patch_a", "patch_b"};
-/// Additional column of axes from Voronoi diagrams with patches. Triangles, int32: number of the sheet between two
-/// patches, from 0; -1 if the two patches are the same.
+/// Additional column of the same axes. Triangles, int32: number of the sheet of two patches, from 0; -1 inside a patch.
 inline constexpr std::string_view patch_sheet = "patch_sheet";
 
 /// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: a
-/// vertex, edge or triangle exists if theta is less than this angle. The angle is infinite if the vertex, edge or
-/// triangle exists at every theta.
+/// vertex, edge or triangle exists if theta is less than this angle. Infinite if it exists at every theta.
 inline constexpr std::string_view until = "until";
 /// Edges, float32, degrees: smallest theta at which the edge has its role. An edge has its role if from <= theta <
 /// until. If the role of an edge changes with theta, the edge is listed once for each role. For example, an edge that
@@ -141,12 +138,11 @@ class CompleteAxis {
   std::optional<Complex> copy_;
 };
 
-/// Returns one sentence with the first reason why a complex is not a medial axis. The string is empty if the complex is
-/// a medial axis.
+/// Returns the first reason why a complex is not a medial axis in one sentence, or an empty string if it is one.
 ///
 /// The complex must have no problem of problem_of(), at most 2^31 - 1 vertices, and all columns of MedialView. All
-/// numbers must be finite, radii 0 or more, and sites -1 or more. Roles of vertices must be values of MedialRole. Roles
-/// of edges must be curve, rim or seam. Sheet numbers must be 0 or more, and less than the number of triangles.
+/// numbers must be finite, radii 0 or more, and sites -1 or more. Roles must be values of MedialRole, for edges curve,
+/// rim or seam. Sheet numbers must be 0 or more, and less than the number of triangles.
 [[nodiscard]] std::string problem_of_medial(const Complex& axis);
 /// Returns one sentence about the first problem of axes of all angles, or an empty string if they are valid. The
 /// complex must meet the conditions of problem_of_medial(), and have the columns of MedialLevels. The numbers in these
@@ -169,8 +165,8 @@ struct Description<MedialCounts> {
   static constexpr std::string_view doc = "Numbers of the parts of a medial axis";
   static constexpr std::tuple members{
       Member{"vertices", &MedialCounts::vertices, "", "points of the axis"},
-      Member{"triangles", &MedialCounts::triangles, "", "triangles of all sheets"},
-      Member{"sheets", &MedialCounts::sheets, "", "sets of triangles that are connected without crossing a seam"},
+      Member{"triangles", &MedialCounts::triangles, "", "triangles of its sheets"},
+      Member{"sheets", &MedialCounts::sheets, "", "parts of the surface that are connected without crossing a seam"},
       Member{"curve_edges", &MedialCounts::curve_edges, "", "edges without triangles"},
       Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of exactly one triangle"},
       Member{"seam_edges", &MedialCounts::seam_edges, "", "edges of three or more triangles"},

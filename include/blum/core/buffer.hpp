@@ -16,8 +16,7 @@ namespace detail {
 void free_aligned(void* memory, std::size_t bytes) noexcept;
 }  // namespace detail
 
-/// Movable array of fixed size for grid values. Its memory is aligned to 64 bytes and not initialised; clone() copies
-/// it.
+/// Array of fixed size for grid values. It is aligned to 64 bytes, not initialised, and movable; clone() copies it.
 ///
 /// Writing a field to fresh 4 KiB pages takes longer than computing the field. So large buffers request huge pages, and
 /// their memory is not zeroed.

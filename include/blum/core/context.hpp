@@ -19,8 +19,7 @@ struct Context {
   /// thread. The function must not throw.
   std::function<void(double fraction, std::string_view phase)> progress = {};
 
-  /// Token through which the caller asks running work to stop. After a stop request, the running call throws Cancelled
-  /// within 200 ms.
+  /// Asks running work to stop. After such a request, the call throws Cancelled within 200 ms.
   std::stop_token cancel = {};
 
   /// Device that computes fields (distance_field, FieldSolver, distance_transform). All other work runs on the CPU,

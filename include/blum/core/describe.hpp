@@ -168,9 +168,7 @@ template <DescribedEnum Enum>
   detail::refuse_choice(what, text, names);
 }
 
-/// Returns the words as one text, for example "a, b and c".
-/// @param last   word before the last item.
-/// @param quote  text that is put before and after each word.
+/// Returns the words as one text: "a, b and c", with `last` instead of "and". @param quote  is put around each word.
 [[nodiscard]] std::string join_words(std::span<const std::string_view> words, std::string_view last = "and",
                                      std::string_view quote = {});
 

@@ -8,8 +8,7 @@
 
 namespace blum {
 
-/// Base of every exception that Blum throws. what() states the problem, the file, option or element that has the
-/// problem, and the remedy.
+/// Base of every exception that Blum throws. what() states the problem, its place and the remedy.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -8,7 +8,8 @@
 
 namespace blum {
 
-/// Returns the shortest text that parses back to exactly the same number. (std::to_string prints 300 digits of 1e300.)
+/// Returns the shortest text that parses back to exactly the same number.
+/// (std::to_string prints 300 digits of 1e300.)
 inline std::string exact_text(double value) {
   std::array<char, 32> text{};
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value);

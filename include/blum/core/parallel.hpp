@@ -19,9 +19,8 @@ struct WorkRange {
 
 /// Time at which the other workers join the calling thread in a parallel loop.
 enum class Start {
-  /// The calling thread begins alone. Other workers join after 50 us, if the loop is expected to take another 150 us.
-  /// So a short loop costs the same with any number of threads. In a loop of few long ranges, the other workers idle
-  /// during the first range.
+  /// The calling thread begins alone. Others join after 50 us, if the loop is expected to take 150 us more. So a short
+  /// loop costs the same with any number of threads. A loop of few long ranges loses the time of its first range.
   measured,
   /// Other workers join at the beginning. Use this value for loops of few long ranges.
   at_once,
@@ -31,13 +30,12 @@ enum class Start {
 /// ranges in ascending order.
 ///
 /// The ranges depend only on `count` and `grain`, never on the number of threads. So results are the same for any
-/// number of threads if `body` writes only data of its own range. If there is only one worker, all ranges run on the
-/// calling thread. The loop does not wait for threads that are busy elsewhere.
+/// number of threads if `body` writes only data of its own range. A single worker runs on the calling thread. The loop
+/// does not wait for threads that are busy elsewhere.
 ///
 /// @param phase  name for Context::progress. An empty name reports no progress.
-/// @param body   must not throw, except std::bad_alloc. If `body` throws, the first exception is rethrown after all
-///               workers have stopped.
-/// @throws Cancelled if the caller asked to stop. The loop checks for this request before every range.
+/// @param body   must not throw, except std::bad_alloc. The first exception is rethrown once all workers have stopped.
+/// @throws Cancelled if the caller asked to stop. This is checked before every range.
 void parallel_for(const Context& context, std::size_t count, std::size_t grain, std::string_view phase,
                   const std::function<void(const WorkRange&)>& body, Start start = Start::measured);
 

@@ -35,9 +35,8 @@ void sort_by_digits(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& scr
   }
 }
 
-/// Sorts items by key; items with equal keys keep their order. Cost: at most four passes over the items, one for each
-/// digit of the keys. The pass for a digit is skipped if all keys have the same value of this digit. `scratch` keeps
-/// its memory between calls.
+/// Sorts items by key; items with equal keys keep their order. Cost: at most four passes over the items. A pass is
+/// skipped if all keys have the same digit in it. `scratch` keeps its memory between calls.
 inline void radix_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& scratch) {
   // Short lists use fewer counts, because clearing and summing many counts would cost more than it saves.
   if (items.size() < 2048) {

@@ -21,8 +21,7 @@ enum class WarningCode : std::uint8_t {
   solid_of_voxels,     ///< a mesh bounds no polyhedron, so its solid is represented by voxels
   crossings_removed,   ///< a mesh crosses itself; the result is for the mesh after its crossings were removed
   other_solid,         ///< options select a solid that differs from the solid recorded in the file of an axis
-  other_vertices,      ///< vertices were merged, or vertices at equal positions are separate: the mesh may not be the
-                       ///< intended one
+  other_vertices,      ///< vertices were merged, or equal vertices are separate: the mesh may not be the intended one
   left_out,            ///< parts of an input or a result were left out
   open_mesh,           ///< a mesh has a boundary, although a closed mesh is expected
   facing,              ///< triangles have inconsistent orientations, or face into the solid
@@ -33,8 +32,7 @@ enum class WarningCode : std::uint8_t {
   rounded,             ///< a file contains rounded numbers, so guarantees for the exact numbers may not hold
   not_extended,        ///< rims of an axis were not extended
   coarse_grid,         ///< a grid is too coarse for the shape
-  meet_at_start,       ///< features are already in contact at the start of a motion, so the times of their contacts are
-                       ///< 0
+  meet_at_start,       ///< features meet at the start of a motion, so the times of their contacts are 0
 };
 
 template <>

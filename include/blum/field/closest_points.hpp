@@ -36,10 +36,9 @@ struct Description<ClosestPointOptions> {
   static constexpr std::string_view name = "ClosestPointOptions";
   static constexpr std::string_view doc = "Options of closest points";
   static constexpr std::tuple members{
-      Member{"sign", &ClosestPointOptions::sign, "",
-             "rule for the sign of distances, as for fields; 'none' is fastest"},
-      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units",
-             "largest distance at which points of the mesh are found", Range::at_least(0)},
+      Member{"sign", &ClosestPointOptions::sign, "", "rule for the sign, as for fields; 'none' is fastest"},
+      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units", "largest distance that is searched",
+             Range::at_least(0)},
   };
 };
 
@@ -124,15 +123,13 @@ class ClosestPointQuery {
   void for_each_nearest(std::span<const Vec3d> queries, FunctionRef<void(std::span<const FoundPoint>)> use,
                         const Context& context = {}) const;
 
-  /// Returns the gradient of the distance at a query. The gradient has length 1. Off the surface, it is the result of
-  /// blum::gradient(). On the surface (within rounding), the distance grows in several directions. There, the result is
-  /// the unit normal of the closest site. For an edge or vertex, this is the direction of its pseudonormal
-  /// (Pseudonormals). If warnings() reports triangles that face the wrong way, the normals are those of the reversed
-  /// triangles.
+  /// Returns the gradient of the distance at a query, which has length 1. Off the surface, it is that of the function
+  /// blum::gradient(). On the surface (within rounding) the distance grows in several directions. The result is then
+  /// the normal of the closest site: that of the face, or the direction of the edge's or vertex's Pseudonormals. If
+  /// warnings() reports triangles that face the wrong way, the normals are those of the reversed triangles.
   /// @param found  result of nearest(query).
   /// @return       nullopt if nothing was found, or if the site has no normal: segments, points, triangles without
-  /// area. Cost: 0.01 us. If signs do not need normals, the first query on the surface computes all normals:
-  /// O(triangles).
+  /// area. Cost: 0.01 us. The first query on the surface computes all normals, unless signs need them: O(triangles).
   [[nodiscard]] std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found) const;
 
   /// Returns the gradient at each query, computed with threads.
@@ -154,7 +151,8 @@ class ClosestPointQuery {
 
   /// Finds, for each query, the triangles, segments and points of the mesh that are within a distance of the query.
   /// Each primitive is returned with its point closest to the query. Distances are unsigned. The search uses threads.
-  /// @param distance  mesh units, >= 0. If it is infinite, all primitives are found. ClosestPointOptions::max_distance
+  /// @param distance  mesh units, >= 0.
+  /// If it is infinite, all primitives are found. ClosestPointOptions::max_distance
   ///                  limits the search, too.
   /// @throws InvalidOption, also for the queries that nearest() rejects.
   /// @throws Cancelled.

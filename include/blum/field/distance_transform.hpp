@@ -40,10 +40,9 @@ struct Description<DistanceTransformOptions> {
       Member{"signed", &DistanceTransformOptions::is_signed, "",
              "true: distance to the nearest voxel of the other kind (selected or not), negative at selected voxels; "
              "false: distance to the nearest selected voxel"},
-      Member{
-          "band", &DistanceTransformOptions::band, "units of the spacing",
-          "half-width of a band around the selected voxels; voxels beyond the band get the distance +-band and no site",
-          Range::positive()},
+      Member{"band", &DistanceTransformOptions::band, "units of the spacing",
+             "half-width of a band around the selected voxels; voxels beyond it get the distance +-band and no site",
+             Range::positive()},
       Member{"sites", &DistanceTransformOptions::sites, "", "true: store the closest voxels, which doubles the memory"},
   };
 };

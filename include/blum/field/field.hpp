@@ -119,7 +119,7 @@ struct Description<FieldOptions> {
              "rule for the sign, which is negative inside; 'auto': by orientation if the mesh is closed and does not "
              "cross itself, otherwise by winding numbers"},
       Member{"band", &FieldOptions::band, "mesh units",
-             "half-width of a band around the surface; nodes beyond the band get the distance +-band and no site",
+             "half-width of a band around the surface; nodes beyond it get the distance +-band and no site",
              Range::positive()},
       Member{"site_ids", &FieldOptions::site_ids, "",
              "numbering of sites: features (vertices, edges and faces) or triangles", Range{}, of_meshes},
@@ -127,7 +127,7 @@ struct Description<FieldOptions> {
       Member{"order", &FieldOptions::order, "",
              "number of closest sites per node, with their distances: 1, or (on the CPU only) 2", Range::between(1, 2)},
       Member{"second", &FieldOptions::second, "",
-             "rule for second sites of order 2: sites without a common vertex with the closest site, or of another "
+             "for order 2, sites that may be second: without a common vertex with the closest site, or of another "
              "object (connected part of the mesh)"},
   };
 };
@@ -180,20 +180,18 @@ struct Field {
 ///              one with the smallest id is reported. The objects are the connected parts of the mesh; triangles and
 ///              segments connect their vertices.
 /// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, DeviceError, Cancelled.
-/// Cost: about O(nodes + sites log sites). The field takes 8 bytes per node, or 4 without sites. If the closest sites
-/// decide signs, a CUDA device temporarily takes 8 bytes per node, also without sites. The closest sites decide signs
-/// with `normals` if shells cross or face different ways. Order 2 takes twice the memory of order 1. An unsigned field
-/// of order 2 takes three to four times as long as one of order 1. Method: docs/theory/fields.md (Sud 2006, ch. 2 and
-/// 4).
+/// Cost: about O(nodes + sites log sites). The field takes 8 bytes per node, or 4 without sites. A CUDA device
+/// temporarily takes 8 bytes per node, also without sites, if the closest sites decide signs. This is the case with
+/// `normals` if shells cross or face different ways. Order 2 takes twice the memory of order 1. An unsigned field of
+/// order 2 takes three to four times as long as one of order 1. Method: docs/theory/fields.md (Sud 2006, ch. 2 and 4).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
                                    const Context& context = {});
-/// Computes the field of a mesh with objects that the caller defines, for SecondRule::other_object.
+/// Computes the same field with objects that the caller defines, for SecondRule::other_object.
 ///
 /// @param objects  one number per vertex of the mesh: the number of the object that the vertex belongs to. An edge or
 ///                 face belongs to the objects of all of its vertices. If the list is empty, the objects are the
 ///                 connected parts of the mesh.
-/// @throws InvalidOption, also if the numbers of objects and vertices differ, or if the options do not select order 2
-/// and SecondRule::other_object.
+/// @throws InvalidOption, also if the numbers of objects and vertices differ, or if the options do not use objects.
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, std::span<const std::uint32_t> objects,
                                    const FieldOptions& options, const Context& context = {});
 
@@ -212,8 +210,7 @@ class FieldSolver {
   /// is valid until the next call of compute() or take().
   /// @throws as distance_field(). After an error, the solver can still be used.
   const Field& compute(const MeshView& mesh);
-  /// Computes the field with a separate context, which can cancel the computation of this frame. The context's device
-  /// is ignored.
+  /// Computes the field with a context for this frame alone, which can cancel it. The context's device is ignored.
   const Field& compute(const MeshView& mesh, const Context& context);
 
   /// Sets the object of each vertex for the following frames. Before the first call, and after a call with an empty

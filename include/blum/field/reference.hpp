@@ -51,8 +51,7 @@ class BruteForce {
 };
 
 /// Returns the generalized winding number of the triangles around a point: the sum of all signed solid angles over 4 pi
-/// (van Oosterom, Strackee 1983). The winding number is 1 inside a closed, outward-oriented surface, and 0 outside.
-/// Cost: O(triangles).
+/// (van Oosterom, Strackee 1983). It is 1 inside a closed, outward-oriented surface and 0 outside. Cost: O(triangles).
 [[nodiscard]] double winding_number(const MeshView& mesh, const Vec3d& query);
 
 }  // namespace blum::reference

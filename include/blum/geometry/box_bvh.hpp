@@ -16,11 +16,10 @@
 
 namespace blum {
 
-/// Bounding-volume hierarchy over boxes, with eight children per node. The hierarchy finds boxes by their positions,
-/// and passes their indices to a function of the caller, the visitor. The hierarchy for triangles, segments and points
-/// is Bvh.
+/// Bounding-volume hierarchy over boxes, with eight children per node. It finds boxes by their position and passes
+/// their indices to a function of the caller, the visitor. The hierarchy for triangles, segments and points is Bvh.
 ///
-/// All queries may run on many threads at once. Queries allocate no memory except for the lists that they return. The
+/// All queries may run on many threads at once. They allocate no memory except for the lists that they return. The
 /// order of visits does not depend on the number of threads.
 /// Cost: O(n log n) time to build, and 60 bytes per box, in contiguous arrays. A query for one box costs about O(log
 /// n).
@@ -59,8 +58,7 @@ class BoxBvh {
   /// Calls visit(a, b) for pairs of a box a of this hierarchy and a box b of `other`. All pairs that are at most
   /// `margin` apart along every axis are visited, until visit() returns false.
   void for_each_pair(const BoxBvh& other, double margin, FunctionRef<bool(std::uint32_t, std::uint32_t)> visit) const;
-  /// Calls visit(a, b) for all pairs of boxes of this hierarchy that are at most `margin` apart along every axis. Stops
-  /// if visit() returns false. Each pair is visited once, in either order.
+  /// Does the same for pairs of boxes of this hierarchy. Each pair is visited once; either of its boxes may be a.
   void for_each_self_pair(double margin, FunctionRef<bool(std::uint32_t, std::uint32_t)> visit) const;
 
   /// Return all pairs (a, b) that for_each_pair() and for_each_self_pair() visit, in rising order, computed with

@@ -21,17 +21,15 @@ constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 /// the order of their first triangles.
 [[nodiscard]] std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites);
 
-/// Returns the triangles of a closed manifold. Some triangles are reversed, so that neighbours have consistent
-/// orientations. Each shell gets the orientation of the majority of its triangles. Returns nullopt if a shell is
-/// one-sided.
+/// Returns the triangles of a closed manifold, some of them reversed so that neighbours have consistent orientations.
+/// Each shell gets the orientation that most of its triangles have. Returns nullopt if a shell is one-sided.
 /// @param count  is set to the number of reversed triangles.
 [[nodiscard]] std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                                       std::size_t& count);
 
-/// Returns all triangles of any mesh. Some triangles are reversed, so that the two triangles of an edge have consistent
+/// Returns all triangles of any mesh, some of them reversed, so that those that share an edge have consistent
 /// orientations. A patch is a set of triangles that are connected through edges with exactly two triangles. In each
-/// patch, at least half of the triangles keep their orientation. Patches without a consistent orientation stay as they
-/// are.
+/// patch, at least half of the triangles are kept. Patches without a consistent orientation stay as they are.
 /// Cost: O(triangles).
 [[nodiscard]] std::vector<Triangle> agreeing_patches(const MeshView& mesh, const SiteTable& sites);
 
@@ -42,15 +40,14 @@ struct RepairedFacing {
   std::size_t reversed_shells = 0;     ///< shells that were reversed as a whole
 };
 
-/// Returns the triangles of a mesh after wrong orientations were repaired. First, triangles that face against the
-/// majority of their shell are reversed. Then, each outermost shell with a negative volume is reversed, together with
-/// all shells inside it. For example, this repairs a solid with voids whose shells all face the wrong way. Other shells
-/// keep their orientation, for example a shell that lies inside another shell and faces the same way.
+/// Returns the triangles of a mesh after wrong orientations were repaired. First, triangles that face another way than
+/// most of their shell are reversed. Then, each outermost shell with a negative volume is reversed, together with all
+/// shells inside it. So an inside-out solid with voids becomes the solid. Other shells keep their orientation, for
+/// example a shell inside another one that faces the same way.
 /// @return nullopt if no triangle is to be reversed, if an edge does not have two triangles, or if a shell is
 /// one-sided.
 /// @param given  the result of orientation() for the mesh.
-/// @throws Cancelled. Cost: none for meshes that face outwards. For other meshes, the cost is twice that of
-/// orientation().
+/// @throws Cancelled. Cost: none for meshes that face outwards; for others, twice that of orientation().
 [[nodiscard]] std::optional<RepairedFacing> repaired_facing(const MeshView& mesh, const SiteTable& sites,
                                                             const Orientation& given, const Context& context);
 

@@ -10,9 +10,8 @@ namespace blum::detail {
 
 // Every plane of a grid is treated as if it were moved infinitely little towards smaller coordinates (simulation of
 // simplicity, Edelsbrunner and Muecke 1990). Planes across x move infinitely more than planes across y, which move
-// infinitely more than planes across z. After these moves, no vertex lies in a plane, no edge meets a line of the grid,
-// and no triangle meets a node. The results of all functions are consistent, and exact for coordinates that are 0 or of
-// magnitude 1e-45 to 1e45.
+// infinitely more than planes across z. So no vertex lies in a plane, no edge meets a line of the grid, and no triangle
+// meets a node. All answers are consistent, and exact for coordinates that are 0 or of magnitude 1e-45 to 1e45.
 //
 // A line along an axis is given by two coordinates: `u` along the next axis, and `v` along the axis after that. The
 // order of axes is x, y, z, x, ...

@@ -17,10 +17,9 @@ namespace blum {
 /// problem_of_crossings() finds them.
 [[nodiscard]] std::string problem_as_solid(const Topology& facts);
 
-/// Return one sentence if a mesh touches or crosses itself; otherwise an empty text. The sentence contains the indices
-/// of two vertices or triangles. The function problem_of_places() searches for two vertices of triangles at the same
-/// position. The function problem_of_crossings() searches for triangles that cross, or touch beyond shared corners and
-/// edges.
+/// Return a sentence if a mesh touches or crosses itself; else an empty text. The sentence contains the indices of two
+/// vertices or triangles. The first function looks for two vertices of triangles at the same position. The second one
+/// looks for triangles that cross, or touch beyond shared corners and edges.
 /// @throws Cancelled.
 [[nodiscard]] std::string problem_of_places(const MeshView& mesh);
 [[nodiscard]] std::string problem_of_crossings(const MeshView& mesh, const Context& context = {});
@@ -56,8 +55,7 @@ inline constexpr std::string_view shells_cross = "its shells are not nested: the
 /// @param is_complete  false if more than `pairs` pairs exist.
 [[nodiscard]] std::string crossing(std::size_t pairs, bool is_complete);
 [[nodiscard]] std::string touching(std::size_t pairs, bool is_complete);
-/// Returns the message for a mesh that crosses or touches itself, in functions that need the triangles of the mesh
-/// itself.
+/// Returns the message of functions that need the triangles of the mesh itself, if the mesh crosses or touches itself.
 /// @param how  text of Solid::reason().
 [[nodiscard]] std::string crosses_and_is_resolved(const std::string& how);
 /// Return the messages for a triangle with the same vertex at two corners, and for a triangle without area that no edge

@@ -16,14 +16,13 @@
 namespace blum {
 
 /// Bounding-volume hierarchy over the primitives of a mesh, with eight children per node and boxes aligned with the
-/// surface. The hierarchy finds pairs of primitives of two meshes that may be close to each other. The hierarchy for
-/// closest points and rays is Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the
-/// points of the mesh.
+/// surface. It finds pairs of primitives of two meshes that may be close. The hierarchy for closest points and rays is
+/// Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the points of the mesh.
 ///
 /// All queries may run on many threads at once. Only the queries that return pairs of nodes allocate memory. Every pair
-/// whose distance is within the limit is visited. Pairs that are farther apart may be visited, too. The shape of the
-/// hierarchy determines the additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3
-/// microseconds per primitive, and 150 bytes per primitive.
+/// whose distance is within the limit is visited. Pairs that are farther apart may be visited, too. The hierarchy
+/// determines these additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3 microseconds
+/// per primitive, and 150 bytes per primitive.
 class OrientedBvh {
  public:
   /// Limits on the pairs that the rest of a search visits. A visitor returns them.
@@ -39,8 +38,7 @@ class OrientedBvh {
   };
 
   /// Visitor: a function that is called with a primitive of this hierarchy, a primitive of the other hierarchy, and a
-  /// lower bound on their distance. A visitor returns the limits for the rest of the search. Limits can only become
-  /// narrower.
+  /// lower bound on their distance. It returns the limits for the rest of the search. Limits can only become narrower.
   using Visit = FunctionRef<Wanted(std::uint32_t, std::uint32_t, double)>;
 
   /// @param mesh  must pass validate(mesh). @throws Cancelled.

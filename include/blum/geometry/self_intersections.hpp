@@ -16,9 +16,8 @@ namespace blum {
 struct TrianglePair {
   TriangleId first;  ///< the smaller id
   TriangleId second;
-  /// True if the triangles cross: they lie in different planes, and some points are inside both triangles. False if the
-  /// triangles touch: a corner or an edge of one triangle lies on the other triangle. Also false if they overlap in one
-  /// plane, as equal triangles do.
+  /// True if the triangles cross: they lie in different planes, and some points are inside both triangles. False if
+  /// they touch: a corner or an edge of one lies on the other, or they overlap in one plane, as equal triangles do.
   bool crosses = false;
 };
 
@@ -69,9 +68,8 @@ struct SelfIntersections {
 class SelfIntersectionSearch {
  public:
   SelfIntersectionSearch() = default;
-  /// @param order  spatial order of the first mesh's triangles, which saves computing an order. For a mesh without
-  /// segments and points, Bvh::order() is such an order. The order is ignored if its size is not the number of
-  /// triangles.
+  /// @param order  order of the first mesh's triangles in space, so that it need not be computed. For a mesh without
+  /// segments and points, it is Bvh::order(). It is ignored if its size is not the number of triangles.
   explicit SelfIntersectionSearch(std::span<const std::uint32_t> order) : order_(order.begin(), order.end()) {}
 
   /// Returns true if find_self_intersections() would find a pair. The triangles of `mesh` may differ from those of the

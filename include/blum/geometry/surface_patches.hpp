@@ -26,8 +26,7 @@ struct SurfacePatch {
 /// Returns the normals of all triangles. The length of a normal is twice the triangle's area.
 [[nodiscard]] std::vector<Vec3d> triangle_normals(const MeshView& mesh);
 
-/// Returns a number for each edge of a mesh. The number is 1 if the edge has exactly two triangles with normals, and
-/// bends by at most `angle`; otherwise 0.
+/// Returns for each edge of a mesh 1 if it has exactly two triangles with normals, and bends by at most an angle.
 /// @param normals  for each triangle, a vector in the direction of its normal; 0 if it has none.
 /// @param angle    degrees.
 [[nodiscard]] std::vector<std::uint8_t> smooth_edges(const MeshView& mesh, const SiteTable& sites,
@@ -42,8 +41,7 @@ class SurfacePatches {
   SurfacePatches(const MeshView& mesh, double angle, const Context& context);
   /// Finds patches in the same way, with the given sites of the mesh. The mesh must pass validate().
   SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context);
-  /// Finds patches in the same way, with given normals. For example, these are the normals of planes that several
-  /// triangles have in common.
+  /// Does the same with given normals, for example with those of planes that several triangles have in common.
   /// @param normals  for each triangle, a vector in the direction of its normal. Its length is twice the area.
   SurfacePatches(const MeshView& mesh, SiteTable sites, std::vector<Vec3d> normals, double angle,
                  const Context& context);

@@ -31,8 +31,7 @@ struct SurfaceShape {
   /// Cone: direction of the axis from the apex towards the part. Sphere: 0.
   Vec3d axis;
   double radius = 0;      ///< Mesh units. Radius of a sphere or cylinder; 0 for planes and cones.
-  double half_angle = 0;  ///< Degrees. Angle between the axis and the straight lines of a cone's surface; 0 for other
-                          ///< shapes.
+  double half_angle = 0;  ///< Degrees. Angle between the axis and the lines of a cone; otherwise 0.
   bool concave = false;   ///< True if the solid is on the outer side of a sphere, cylinder or cone, as around a hole.
   double deviation = 0;   ///< Mesh units. Largest distance between the shape and vertices of the part.
 };
@@ -48,8 +47,7 @@ struct Description<SurfaceShape> {
       Member{"axis", &SurfaceShape::axis, "",
              "unit vector; plane: outer normal; cylinder: axis; cone: axis from the apex; sphere: 0"},
       Member{"radius", &SurfaceShape::radius, "mesh units", "radius of a sphere or cylinder, otherwise 0"},
-      Member{"half_angle", &SurfaceShape::half_angle, "degrees",
-             "angle between the axis and the straight lines of a cone's surface, otherwise 0"},
+      Member{"half_angle", &SurfaceShape::half_angle, "degrees", "angle between axis and lines of a cone, otherwise 0"},
       Member{"concave", &SurfaceShape::concave, "", "true if the solid is on the outer side, as around a hole"},
       Member{"deviation", &SurfaceShape::deviation, "mesh units",
              "largest distance between the shape and vertices of the part"},

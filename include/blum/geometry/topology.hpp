@@ -64,13 +64,13 @@ struct Description<Shell> {
       Member{"bounds", &Shell::bounds, "mesh units", "bounding box"},
       Member{"signed_volume", &Shell::signed_volume, "cubic mesh units",
              "enclosed volume, positive if the shell faces away from its interior"},
-      Member{"area", &Shell::area, "square mesh units", "area of the shell's triangles"},
+      Member{"area", &Shell::area, "square mesh units", "area of its triangles"},
       Member{"euler_characteristic", &Shell::euler_characteristic, "",
              "vertices - edges + faces, with a vertex counted once for each of its fans"},
       Member{"genus", &Shell::genus, "", "number of handles"},
-      Member{"depth", &Shell::depth, "", "number of other shells that contain this shell"},
-      Member{"parent", &Shell::parent, "", "innermost other shell that contains this shell; -1 if none"},
-      Member{"faces_outwards", &Shell::faces_outwards, "", "true if the shell faces away from the solid"},
+      Member{"depth", &Shell::depth, "", "number of other shells that contain it"},
+      Member{"parent", &Shell::parent, "", "innermost shell that contains it; -1 if none"},
+      Member{"faces_outwards", &Shell::faces_outwards, "", "true if it faces away from the solid"},
   };
 };
 
@@ -105,8 +105,7 @@ struct Topology {
   bool faces_outwards = false;  ///< closed && oriented, and every shell faces away from the solid
 
   double area = 0;  ///< area of all triangles, square mesh units
-  /// Sum of the signed volumes of the shells, in cubic mesh units. If `betti` is set, this sum is the volume of the
-  /// solid.
+  /// Sum of the signed volumes of the shells, in cubic mesh units. If `betti` is set, it is the volume of the solid.
   double signed_volume = 0;
   /// V - E + F, for the V distinct vertices, E distinct edges and F faces of the triangles.
   std::int64_t euler_characteristic = 0;
@@ -145,7 +144,7 @@ struct Description<Topology> {
       Member{"degenerate_triangles", &Topology::degenerate_triangles, "",
              "triangles that use a vertex twice, or whose corners lie exactly on one line"},
       Member{"duplicate_triangles", &Topology::duplicate_triangles, "",
-             "triangles with the same three vertices as an earlier triangle"},
+             "triangles with the same three vertices as an earlier one"},
       Member{"closed", &Topology::closed, "", "true if every edge of a triangle has exactly two triangles"},
       Member{"oriented", &Topology::oriented, "", "true if no edge is inconsistent"},
       Member{"manifold", &Topology::manifold, "", "true if no edge or vertex is non-manifold"},

@@ -20,8 +20,7 @@ inline constexpr std::uint32_t no_component = 0xffffffff;
 /// Uses of one edge by triangles.
 struct EdgeTally {
   std::uint32_t count = 0;     ///< number of uses
-  std::int32_t balance = 0;    ///< number of uses from the smaller to the larger vertex, minus the number of uses in
-                               ///< the opposite direction
+  std::int32_t balance = 0;    ///< uses from the smaller to the larger vertex, minus those in the other direction
   std::uint32_t triangle = 0;  ///< one of the triangles that use the edge
 
   [[nodiscard]] bool is_consistent() const { return count == 2 && balance == 0; }

@@ -16,8 +16,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Vertex indices of a line segment.
 using Segment = std::array<std::uint32_t, 2>;
 
-/// View of any set of triangles, segments and points over shared vertices, through spans. The view copies and owns no
-/// data.
+/// View of any set of triangles, segments and points over shared vertices, through spans. It copies and owns nothing.
 ///
 /// Nothing is assumed about the mesh: triangles may intersect, be repeated or degenerate, and leave holes. Vertices
 /// that no triangle, segment or point uses are not part of the shape, and are ignored.

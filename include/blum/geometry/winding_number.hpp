@@ -57,10 +57,9 @@ class WindingNumber {
     bool is_inside = false;
     double margin = 0;  ///< 0 if rounding alone may change the side
   };
-  /// Returns the side of a query, as is_inside() does, and its margin.
+  /// Returns the side that is_inside() returns, and the margin.
   /// @param distance  distance of the query from the triangles, mesh units. Rounding may change solid angles by about
-  /// 1e-15 times the coordinates divided by this distance. If rounding may change w by the whole margin, the margin is
-  /// 0, and the rounded full sum decides the side.
+  /// 1e-15 times the coordinates divided by this distance. If no margin is left, the rounded full sum decides.
   [[nodiscard]] Decision decide(const Vec3d& query, double distance) const;
   /// Returns the amount by which rounding may change w at a given distance from the triangles.
   [[nodiscard]] double rounding_at(const Vec3d& query, double distance) const;

@@ -66,8 +66,7 @@ class CellLattice {
     return {static_cast<Cell>(above - 8 * stride_[normal_axis(square)]), above};
   }
 
-  /// Calls visit(face) for each face of a given cell. A face is a cell of one dimension less in the border of the given
-  /// cell.
+  /// Calls visit(face) for each face of a given cell: a cell of one dimension less in its border.
   template <class Visit>
   void for_each_face(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -67,9 +67,8 @@ void validate(const GridSpec& grid);
 /// Does the same as grid_around(), with a given spacing instead of a resolution. @param spacing > 0, in mesh units.
 [[nodiscard]] GridSpec grid_around_with_spacing(const Box3& shape_bounds, double spacing, double padding = 0.1);
 
-/// Returns a grid over a box, without padding. The longest side has `resolution` nodes, and the nodes cover it exactly.
-/// The other sides get nodes by the rule of grid_around(). A side of length zero gets one layer. @throws InvalidGrid,
-/// InvalidOption.
+/// Returns a grid over a box, without padding. The longest side has `resolution` nodes and is covered exactly. The
+/// other sides get nodes as in grid_around(). A side of length zero gets one layer. @throws InvalidGrid, InvalidOption.
 [[nodiscard]] GridSpec grid_in(const Box3& box, int resolution = 256);
 /// Does the same as grid_in(), with a given spacing instead of a resolution. If a side is not a whole number of steps
 /// long, the grid is centred on the side, with the next larger number of steps. The grid then extends beyond the box by

@@ -37,8 +37,7 @@ struct TubeImageOptions {
   bool labelled = false;   ///< true: tubes along x, y, z have labels 1, 2, 3 (voxels in several tubes: the smallest);
                            ///< false: all tubes have label 1
 };
-/// Makes a network of tubes along the lines of a cubic lattice. The tubes are round if lengths are measured in voxels.
-/// Values are uint8.
+/// Makes a network of tubes along the lines of a cubic lattice. The tubes are round in voxels. Values are uint8.
 [[nodiscard]] VoxelImage make_tube_image(const TubeImageOptions& options = {});
 
 struct BallsImageOptions {
@@ -56,8 +55,7 @@ struct NoiseImageOptions {
   Vec3d spacing{1, 1, 1};  ///< > 0, in world units
   std::uint64_t seed = 1;
 };
-/// Makes an image of random voxels. Each voxel, also at the border, is 1 with a probability of `density`, otherwise 0.
-/// Values are uint8.
+/// Makes an image in which each voxel is set or not at random, also at the border. Values are uint8: 0, 1.
 [[nodiscard]] VoxelImage make_noise_image(const NoiseImageOptions& options = {});
 
 /// Kind of image that Blum generates.

@@ -23,8 +23,7 @@ namespace blum {
 namespace detail {
 
 /// Selected voxels as rows of bits. Bit x of row r is set if voxel x of row r is selected. Each row starts with a new
-/// 64-bit word, and the bits after its last voxel are 0. A row may also be read as groups of 16 bits, in the order of
-/// rising x.
+/// 64-bit word, and the bits after its last voxel are 0. A row may also be read as groups of 16 bits, in rising x.
 struct MaskBits {
   std::size_t words_per_row = 0;
   Buffer<std::uint64_t> words;

@@ -50,11 +50,10 @@ using Neighbourhood = std::uint32_t;
 
 [[nodiscard]] Neighbourhood neighbourhood(const VoxelSet& voxels, std::int64_t i, std::int64_t j, std::int64_t k);
 
-/// Returns true if adding or removing the middle voxel preserves the topology (Bertrand, Malandain 1994). Two
-/// conditions must hold. First, the other voxels of the set in the neighbourhood form one 26-component. Second, the
-/// voxels outside the set that share a face with the middle voxel are 6-connected with each other. Their connections
-/// may use voxels outside the set that share a face or an edge with the middle voxel. The bit of the middle voxel is
-/// ignored.
+/// Returns true if adding or removing the middle voxel preserves the topology (Bertrand, Malandain 1994). The result is
+/// true if two conditions hold. The other voxels of the set in the neighbourhood must form one 26-component. The voxels
+/// outside the set that share a face with the middle voxel must be 6-connected with each other. The connection may use
+/// voxels outside the set that share a face or an edge with the middle voxel. The bit of the middle voxel is ignored.
 [[nodiscard]] bool is_simple(Neighbourhood around);
 
 }  // namespace blum

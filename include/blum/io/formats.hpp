@@ -76,8 +76,8 @@ struct Description<FileFormat> {
       Member{"extensions", &FileFormat::extensions, "", "extensions that are read, in lower case, with the dot"},
       Member{"written", &FileFormat::written, "",
              "extensions that are written: some or all of those that are read, or others if the format is not read"},
-      Member{"holds", &FileFormat::holds, "", "description of the content that a file may have"},
-      Member{"opens_in", &FileFormat::opens_in, "", "names of other programs that open the files"},
+      Member{"holds", &FileFormat::holds, "", "description of the possible content"},
+      Member{"opens_in", &FileFormat::opens_in, "", "names of other programs that open such files"},
   };
 };
 

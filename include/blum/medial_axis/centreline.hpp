@@ -73,7 +73,7 @@ struct Description<CentrelineNode> {
       Member{"kind", &CentrelineNode::kind, "", "point (of a blob without branches), end or junction"},
       Member{"position", &CentrelineNode::position, "world units", "position"},
       Member{"radius", &CentrelineNode::radius, "world units",
-             "end: radius of the branch at its end; other kinds: distance to the closest voxel outside the label"},
+             "end: radius of its branch there; other kinds: distance to the closest voxel outside"},
   };
 };
 
@@ -98,14 +98,13 @@ struct Description<CentrelineBranch> {
       Member{"nodes", &CentrelineBranch::nodes, "", "first and last node; -1 for closed curves"},
       Member{"length", &CentrelineBranch::length, "world units", "length of its polyline"},
       Member{"mean_radius", &CentrelineBranch::mean_radius, "world units",
-             "mean radius along the part at least 1.5 voxels away from the balls of the junctions; without such a "
-             "part, along the whole branch"},
-      Member{"min_radius", &CentrelineBranch::min_radius, "world units",
-             "smallest radius on the part that mean_radius uses"},
+             "mean radius along the part at least 1.5 voxels away from its junctions' balls; if there is none, along "
+             "the whole branch"},
+      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "smallest radius on the same part"},
       Member{"points", &CentrelineBranch::points, "world units",
              "polyline from node to node; for closed curves the first point is also the last"},
       Member{"radii", &CentrelineBranch::radii, "world units",
-             "radius at each point: radius of the circle with the area of the cross-section at this point"},
+             "radius at each point: that of the circle with the area of the cross-section there"},
   };
 };
 
@@ -133,8 +132,7 @@ struct Description<Centreline> {
       Member{"label_betti", &Centreline::label_betti, "", "components, tunnels, voids of the voxels"},
       Member{"graph_betti", &Centreline::graph_betti, "", "components, tunnels, voids of nodes and branches"},
       Member{"homotopy_kept", &Centreline::homotopy_kept, "", "true if label_betti and graph_betti are equal"},
-      Member{"homotopy", &Centreline::homotopy, "",
-             "one sentence: the homotopy type is kept, or the difference and its reason"},
+      Member{"homotopy", &Centreline::homotopy, "", "one sentence: kept, or the difference and its reason"},
   };
 };
 

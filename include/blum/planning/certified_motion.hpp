@@ -153,8 +153,10 @@ struct Description<MotionContact> {
   static constexpr std::string_view doc = "First time at which surfaces meet during a motion";
   static constexpr std::tuple members{
       Member{"earliest", &MotionContact::earliest, "", "before this time, the surfaces do not meet"},
-      Member{"latest", &MotionContact::latest, "", "at this time, they meet; none if they only come closer than rounding"},
-      Member{"pair", &MotionContact::pair, "", "a pair that meets at 'latest'; without it, the closest pair at 'earliest'"},
+      Member{"latest", &MotionContact::latest, "",
+             "at this time, they meet; none if they only come closer than rounding"},
+      Member{"pair", &MotionContact::pair, "",
+             "a pair that meets at 'latest'; without it, the closest pair at 'earliest'"},
   };
 };
 

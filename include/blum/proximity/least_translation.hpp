@@ -16,8 +16,7 @@ struct TranslationOptions {
   /// For convex solids: largest difference between the upper and the lower bound, as a fraction of the upper bound: 0
   /// to 1. With 0, the difference is as small as rounding permits.
   double translation_tolerance = 0;
-  /// For convex solids: largest number of planes that the search tries, at least 1. If the search reaches this number,
-  /// the bounds may differ by more than `translation_tolerance`.
+  /// Largest number of planes that are tried for convex solids, at least 1. When it is reached, the gap stays wider.
   std::size_t max_planes = 50'000;
   /// For solids that are not convex: largest number of translations that the search tries.
   std::size_t max_tests = 1'500;
@@ -29,12 +28,12 @@ struct Description<TranslationOptions> {
   static constexpr std::string_view doc = "Precision of the least translation that separates two solids";
   static constexpr std::tuple members{
       Member{"translation_tolerance", &TranslationOptions::translation_tolerance, "parts of the upper bound",
-             "for convex solids: largest difference between the bounds; 0: as small as rounding permits",
+             "largest gap between both bounds for convex solids; 0: as small as rounding permits",
              Range::between(0, 1)},
-      Member{"max_planes", &TranslationOptions::max_planes, "",
-             "for convex solids: largest number of planes that are tried", Range::between(1, 1e9)},
-      Member{"max_tests", &TranslationOptions::max_tests, "",
-             "for solids that are not convex: largest number of translations that are tried", Range::between(0, 1e9)},
+      Member{"max_planes", &TranslationOptions::max_planes, "", "largest number of planes tried for convex solids",
+             Range::between(1, 1e9)},
+      Member{"max_tests", &TranslationOptions::max_tests, "", "largest number of translations tried for other solids",
+             Range::between(0, 1e9)},
   };
 };
 
@@ -66,7 +65,7 @@ struct Description<LeastTranslation> {
       Member{"upper", &LeastTranslation::upper, "mesh units", "length of 'translation', which separates the solids"},
       Member{"translation", &LeastTranslation::translation, "mesh units", "translation of the first solid"},
       Member{"are_convex", &LeastTranslation::are_convex, "",
-             "true if both solids are convex, so that the bounds differ only by rounding"},
+             "true if both solids are convex, so that both bounds are equal except for rounding"},
   };
 };
 

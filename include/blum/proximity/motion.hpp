@@ -23,7 +23,6 @@ using ObjectId = Id<struct ObjectTag>;
 /// 1 are exact.
 struct ObjectMotion {
   ObjectId object;
-  /// Positions of the vertices at time 1, before the transform is applied. If empty, the vertices do not change.
   std::span<const Vec3d> vertices = {};
   std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, the transform does not change.
 };
@@ -32,11 +31,9 @@ struct ObjectMotion {
 struct ObjectCollisions {
   ObjectId first;
   ObjectId second;
-  /// Collisions of vertices of the first object with faces of the second object.
   std::vector<VertexFaceCollision> vertex_face;
   /// Collisions of vertices of the second object with faces of the first object; empty if both objects are the same.
   std::vector<VertexFaceCollision> face_vertex;
-  /// Collisions of edges of the first object with edges of the second object.
   std::vector<EdgeEdgeCollision> edge_edge;
 
   /// Returns the earliest time of impact; nullopt if nothing collides.
@@ -46,8 +43,7 @@ struct ObjectCollisions {
 struct SceneCollisions {
   std::vector<ObjectCollisions> objects;  ///< Pairs of objects that collide, by ascending (first, second).
   std::size_t box_pairs = 0;              ///< Pairs of a vertex and a face, or of two edges, whose moving boxes touch.
-  /// Number of pairs in `box_pairs` that needed an exact test, because no examined direction separates the two
-  /// features.
+  /// Number of the pairs in `box_pairs` that were tested exactly, because no examined direction separates them.
   std::size_t exact_tests = 0;
   std::vector<PhaseTime> phases;
 

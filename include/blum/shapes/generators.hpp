@@ -12,12 +12,11 @@
 
 /// Lengths are in mesh units and at most 1e100, angles in degrees. Unless stated otherwise, a shape is centred at the
 /// origin, and bounds a solid. Its mesh is a closed manifold without self-intersections, consistently oriented, and
-/// faces away from the solid. ShapeInfo::betti gives the topology of the solid. The same options give the same mesh on
-/// every platform, except for the last bits of sines and cosines.
+/// faces away from the solid. ShapeInfo::betti gives its topology. The same options give the same mesh on every
+/// platform, except for the last bits of sines and cosines.
 ///
-/// All functions throw InvalidOption if options contradict each other or are out of the ranges given here. All
-/// functions also throw InvalidOption if the mesh would have more than 50 million triangles. Cost: O(triangles), unless
-/// stated otherwise.
+/// All functions throw InvalidOption if options contradict each other or the ranges given here. They also throw
+/// InvalidOption if the mesh would have more than 50 million triangles. Cost: O(triangles), unless stated otherwise.
 namespace blum {
 
 // ---- Round shapes (generators_round.cpp) ----
@@ -148,8 +147,7 @@ struct NestedShellsOptions {
   double radius = 1;  ///< radius of the outermost sphere, > 0; radii decrease inwards in equal steps
   int frequency = 8;  ///< see SphereOptions
 };
-/// Makes nested spheres that face outwards and inwards alternately. From outside to inside, they bound solid, void,
-/// solid, ...
+/// Makes nested spheres that face outwards and inwards alternately: from outside to inside solid, void, solid, ...
 [[nodiscard]] TriangleMesh make_nested_shells(const NestedShellsOptions& options = {});
 
 struct BodiesOptions {

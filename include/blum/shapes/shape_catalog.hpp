@@ -36,17 +36,15 @@ struct ShapeInfo {
 /// @throws InvalidOption if no shape has the name; the message lists the known names.
 [[nodiscard]] const ShapeInfo& find_shape(std::string_view name);
 
-/// Returns values for all parameters of a shape: the given values, and default values for parameters that are not
-/// given.
-/// @throws InvalidOption if a parameter is unknown or out of range, or if an integer parameter is not a whole number.
-/// The message lists the shape's parameters and ranges.
+/// Returns values for all parameters of a shape: the given ones, and defaults for the others.
+/// @throws InvalidOption if a parameter is unknown or out of range, or if it must be a whole number and is not. The
+/// message lists the shape's parameters and ranges.
 [[nodiscard]] ShapeParameters complete_parameters(const ShapeInfo& shape, const ShapeParameters& given);
 
 /// Generates the shape with the given name; generators.hpp describes the shapes. Coordinates are the same on every
 /// platform, except for the last bits of sines and cosines.
-/// @throws InvalidOption as find_shape() and complete_parameters(), and for more than 50 million triangles.
-/// InvalidOption is also thrown for parameters that contradict each other: for example, a tube thicker than its ring,
-/// or holes that overlap.
+/// @throws InvalidOption as find_shape() and complete_parameters(), and for more than 50 million triangles. It is also
+/// thrown for parameters that contradict each other: for example, a tube thicker than its ring, or holes that overlap.
 [[nodiscard]] TriangleMesh make_shape(std::string_view name, const ShapeParameters& parameters = {});
 
 }  // namespace blum

@@ -43,8 +43,7 @@ struct ExtraCell {
 /// cube of the grid.
 struct BodyCells {
   CellLattice lattice;         ///< Lattice of the voxels. Voxel (i, j, k) surrounds node (i, j, k) of the grid.
-  VoxelSet inside;             ///< Nodes inside the body, decided exactly. For nodes on the surface, see
-                               ///< docs/theory/solid.md.
+  VoxelSet inside;             ///< Nodes inside the body; exact. Ties: docs/theory/solid.md.
   std::vector<Cell> replaced;  ///< Cells of `lattice` that extra cells replace in the model, ascending.
   std::vector<ExtraCell> extra;
   /// For each extra cell, its faces: the cells of one dimension less in its border. A number below `first` is a cell of
@@ -62,12 +61,11 @@ struct BodyCells {
 /// Computes the cellular model of a body.
 /// @param body  closed, manifold, without self-intersections, facing outwards.
 /// @param grid  its axes must be the coordinate axes. The body must lie in the box of the outermost nodes, more than
-///              one step away from the sides of this box.
-/// @param finer  boxes in which the model must be finer than its homotopy type requires, mesh units. A box of the model
-///               is split if it contains part of the surface and overlaps one of the boxes in `finer`. Splitting ends
-///               when the longest side of the model's box is at most about a quarter of the longest side of the box in
-///               `finer`.
-/// @throws InvalidMesh, InvalidGrid, OutOfMemory, Cancelled, each under the same conditions as Solid::model().
+///              one step away from its sides.
+/// @param finer  boxes in which the model must be finer than necessary, mesh units. A box of the model is split if it
+///               contains part of the surface and overlaps one of the boxes in `finer`. Splitting ends when the longest
+///               side of the model's box is at most about a quarter of the longest side of the box in `finer`.
+/// @throws InvalidMesh, InvalidGrid, OutOfMemory, Cancelled as Solid::model().
 /// Cost: that of Solid::model().
 [[nodiscard]] BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, std::span<const Box3> finer,
                                    const Context& context = {});

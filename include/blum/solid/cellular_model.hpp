@@ -45,10 +45,9 @@ struct Description<CellularModelOptions> {
       Member{"spacing", &CellularModelOptions::spacing, "mesh units", "side of a cube, instead of the resolution",
              Range::positive()},
       Member{"shift", &CellularModelOptions::shift, "cubes",
-             "shift of the grid along each axis; another shift may help if a cube fails the test",
-             Range::between(0, 1)},
-      Member{"most_splits", &CellularModelOptions::most_splits, "",
-             "largest number of successive splits of a cube that fails the test", Range::between(0, 200)},
+             "shift of the grid along each axis; if a cube fails the test, another may help", Range::between(0, 1)},
+      Member{"most_splits", &CellularModelOptions::most_splits, "", "most successive splits of a cube that fails",
+             Range::between(0, 200)},
   };
 };
 
@@ -79,9 +78,8 @@ struct ModelFailure {
   double cuts = 0;  ///< For `slanted_needle`: number of splits that would open the needle in this box. A box of half
                     ///< the size needs half this number.
 
-  /// Largest number of splits of a box that are made to open a slanted needle. If more splits are needed, the box is
-  /// not split. Each split opens a part of the needle. The length of this part is the needle's width divided by its
-  /// slant.
+  /// Largest number of splits of a box that are made to open a slanted needle. If more splits are needed, none is made.
+  /// Each split opens a part of the needle. The length of this part is the needle's width divided by its slant.
   static constexpr double most_cuts = 8192;
 };
 
@@ -93,14 +91,12 @@ struct Description<ModelFailure> {
       Member{"low", &ModelFailure::low, "mesh units", "corner of the box"},
       Member{"high", &ModelFailure::high, "mesh units", "opposite corner"},
       Member{"obstacle", &ModelFailure::obstacle, "", "reason why the component is not contractible"},
-      Member{"cuts", &ModelFailure::cuts, "",
-             "for a slanted needle: number of splits that would open the needle in this box"},
+      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: number of splits that would open it in this box"},
   };
 };
 
 struct CellularModelReport {
-  /// True if, in every cube and box, each component of the solid is contractible, which proves the homotopy type of the
-  /// model.
+  /// True if, in every cube and box, each component of the solid is contractible. This proves the homotopy type.
   bool passes = false;
   GridSpec grid;                        ///< Grid whose nodes are the corners of the cubes.
   std::size_t cut_cubes = 0;            ///< Number of cubes that the surface meets.
@@ -119,11 +115,11 @@ struct Description<CellularModelReport> {
   static constexpr std::string_view doc = "Counts of a cellular model, and the result of its check";
   static constexpr std::tuple members{
       Member{"passes", &CellularModelReport::passes, "",
-             "true if every component in a cell is contractible; the model then has the solid's homotopy type"},
+             "true if every component in a cell is contractible: then the model has the solid's homotopy type"},
       Member{"grid", &CellularModelReport::grid, "", "grid whose nodes are the corners of the cubes"},
       Member{"cut_cubes", &CellularModelReport::cut_cubes, "", "cubes that the surface meets"},
       Member{"failing_cubes", &CellularModelReport::failing_cubes, "", "number of cubes that had to be split"},
-      Member{"boxes", &CellularModelReport::boxes, "", "number of boxes into which failing cubes were split"},
+      Member{"boxes", &CellularModelReport::boxes, "", "number of boxes from these splits"},
       Member{"splits", &CellularModelReport::splits, "", "largest number of successive splits"},
       Member{"cells", &CellularModelReport::cells, "", "vertices, edges, polygons, polyhedra of the model"},
       Member{"euler", &CellularModelReport::euler, "", "alternating sum of the cells: components - tunnels + voids"},
@@ -134,13 +130,12 @@ struct Description<CellularModelReport> {
 
 /// Regular cell complex with the homotopy type of a polyhedron, at any resolution.
 ///
-/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube. The
-/// model has an edge for each connected component of the solid in a square between two cubes. It has a polygon for each
-/// interval of a grid edge inside the solid, and a polyhedron for each grid node inside. If all components are
-/// contractible, the model is homotopy equivalent to the solid. An exact test in each cube decides if the components in
-/// it are contractible. A cube that fails the test is split into boxes until every box passes, or until
-/// CellularModelOptions::most_splits is reached. Walls, gaps and tunnels may be thinner than a cube. Theorem and proof:
-/// docs/theory/solid.md.
+/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube. It has
+/// an edge for each connected component in a square between two cubes. It has a polygon for each interval of a grid
+/// edge inside the solid, and a polyhedron for each grid node inside. If all components are contractible, the model is
+/// homotopy equivalent to the solid. An exact test in each cube decides if the components in it are contractible. A
+/// cube that fails the test is split into boxes until every box passes, or until CellularModelOptions::most_splits is
+/// reached. Walls, gaps and tunnels may be thinner than a cube. Theorem and proof: docs/theory/solid.md.
 class CellularModel {
  public:
   [[nodiscard]] const CellularModelReport& report() const;

@@ -33,8 +33,7 @@ namespace blum {
 /// Closed shell of the surface of a polyhedron.
 struct SolidShell {
   std::uint32_t body = 0;   ///< Body that this shell bounds, as its outer shell or as the boundary of a void.
-  std::uint32_t depth = 0;  ///< Number of other shells that contain this shell. If the number is odd, this shell bounds
-                            ///< a void.
+  std::uint32_t depth = 0;  ///< Number of other shells that contain this one. If odd, this shell bounds a void.
   std::optional<std::uint32_t> parent = {};  ///< Innermost other shell that contains this shell; unset if none does.
   std::int64_t genus = 0;                    ///< Number of handles.
   double volume = 0;                         ///< Enclosed volume, > 0, cubic mesh units.
@@ -46,14 +45,12 @@ struct Description<SolidShell> {
   static constexpr std::string_view name = "SolidShell";
   static constexpr std::string_view doc = "Closed shell of the surface of a polyhedron";
   static constexpr std::tuple members{
-      Member{"body", &SolidShell::body, "",
-             "body that this shell bounds, as its outer shell or as the boundary of a void"},
-      Member{"depth", &SolidShell::depth, "",
-             "number of other shells that contain this shell; if the number is odd, this shell bounds a void"},
-      Member{"parent", &SolidShell::parent, "", "innermost other shell that contains this shell"},
+      Member{"body", &SolidShell::body, "", "body whose outer shell this is, or in which it bounds a void"},
+      Member{"depth", &SolidShell::depth, "", "number of other shells that contain it; if odd, it bounds a void"},
+      Member{"parent", &SolidShell::parent, "", "innermost other shell that contains this one"},
       Member{"genus", &SolidShell::genus, "", "number of handles"},
       Member{"volume", &SolidShell::volume, "cubic mesh units", "enclosed volume, > 0"},
-      Member{"is_reversed", &SolidShell::is_reversed, "", "true if the shell faced into the solid in the input"}};
+      Member{"is_reversed", &SolidShell::is_reversed, "", "true if it faced the solid in the input"}};
 };
 
 /// Body of a mesh: a connected part of a polyhedron, or all of a solid with SolidRule::winding. A SolidBody stores the

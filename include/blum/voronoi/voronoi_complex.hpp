@@ -39,14 +39,11 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  /// If all bodies are convex, planes are used. If some body is not convex, seams are traced. If tracing fails or takes
-  /// long, cubes are used. For bodies that are not convex, cubes are also used if a tolerance is given, because only
-  /// cubes bound the distance from the exact diagram.
   automatic,
+  ///< if a tolerance is given: only cubes bound the distance from the exact diagram.
   cubes,  ///< Cubes of an octree, each with a proof of its topology.
-  /// If all bodies are convex, planes are used. If some body is not convex, seams are traced, which may take minutes.
-  /// If tracing fails, cubes are used.
   traced,
+  ///< cubes.
 };
 
 template <>
@@ -61,20 +58,18 @@ struct VoronoiOptions {
   /// Part of the diagram that the complex represents.
   VoronoiPart part = VoronoiPart::all;
   VoronoiMethod method = VoronoiMethod::automatic;
-  /// Planes and traces: triangles form one face if their corners lie within this distance of one plane, >= 0, mesh
-  /// units. For traces, twice this distance is allowed. Junctions and seams of planes within 8 times this distance are
-  /// joined. With 0, the mesh is used as given. Default: 16 times the rounding error of the largest coordinate. The
-  /// number of binary digits of the coordinates shows how they were rounded. For up to 20 digits, the rounding error is
-  /// 0. For 21 to 24 digits, the error is that of single precision. For more digits, the error is that of double
-  /// precision. Cubes: ignored.
+  /// Planes and traces: triangles count as one face if their corners lie within this distance of one plane, >= 0, mesh
+  /// units. For traces, it is twice this distance. Junctions and seams of planes within 8 times this distance are
+  /// joined. 0 uses the mesh as given. If not given, it is 16 times the rounding error of the largest coordinate. The
+  /// error is that of the precision whose digits the longest coordinate fills. With up to 20 binary digits it is 0,
+  /// with 21 to 24 that of single precision. Cubes: ignored.
   std::optional<double> flatness = {};
   /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
   /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Edges of traced medial axes are
   /// at most about as long as this limit. Planes: ignored.
   int resolution = 16;
-  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. If a
-  /// tolerance is given, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of
-  /// this tolerance.
+  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With this
+  /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of it.
   std::optional<double> tolerance = {};
   /// The options below apply only if cubes are used. To use cubes, set `method` or `tolerance`.
   /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
@@ -96,8 +91,8 @@ struct Description<VoronoiOptions> {
       Member{"part", &VoronoiOptions::part, "",
              "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
       Member{"method", &VoronoiOptions::method, "",
-             "auto: planes for convex bodies, otherwise traced seams, or cubes if tracing fails or takes long; cubes: "
-             "always cubes; traced: tracing may take minutes"},
+             "auto: planes if all bodies are convex, otherwise traced seams, cubes if these fail or take long; "
+             "cubes: always; traced: even if it takes minutes"},
       Member{"flatness", &VoronoiOptions::flatness, "mesh units",
              "planes and traces: triangles within this distance of one plane are one face; default: the rounding of "
              "coordinates",
@@ -108,13 +103,12 @@ struct Description<VoronoiOptions> {
       Member{"tolerance", &VoronoiOptions::tolerance, "mesh units",
              "largest distance between the complex and the exact walls", Range::positive()},
       Member{"depth", &VoronoiOptions::depth, "", "largest number of splits of a cube", Range::between(1, 24)},
-      Member{
-          "grids", &VoronoiOptions::grids, "",
-          "largest number of grid positions that are tried: if few cubes fail, all cubes may pass at another position",
-          Range::between(1, 100)},
+      Member{"grids", &VoronoiOptions::grids, "",
+             "largest number of grid positions that are tried: if few cubes fail, another position may have none that "
+             "fails",
+             Range::between(1, 100)},
       Member{"max_cubes", &VoronoiOptions::max_cubes, "",
-             "largest number of cubes, including split cubes; each takes about 10 kB",
-             Range::between(1000, 100'000'000)},
+             "largest number of cubes, including split ones: about 10 kB each", Range::between(1000, 100'000'000)},
   };
 };
 
@@ -186,12 +180,12 @@ struct Description<OpenVoronoiPlace> {
   static constexpr std::string_view name = "OpenVoronoiPlace";
   static constexpr std::string_view doc = "Junction, or piece of a seam, that is not proven";
   static constexpr std::tuple members{
-      Member{"position", &OpenVoronoiPlace::position, "mesh units", "position of the junction or piece"},
-      Member{"size", &OpenVoronoiPlace::size, "mesh units", "size of the part that is not proven"},
+      Member{"position", &OpenVoronoiPlace::position, "mesh units", "of the place"},
+      Member{"size", &OpenVoronoiPlace::size, "mesh units", "of the place"},
       Member{"sites", &OpenVoronoiPlace::sites, "", "numbers of the closest sites"},
       Member{"doubt", &OpenVoronoiPlace::doubt, "",
-             "close: other sites are nearly as close; degenerate: more sites than in general position; seams: another "
-             "number of seams than in general position"},
+             "close: other sites are nearly as close; degenerate: more sites than in general position; seams: not the "
+             "number of seams of general position"},
   };
 };
 
@@ -205,24 +199,20 @@ struct VoronoiReport {
   bool exact = false;
   double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
   double joined = 0;    ///< If exact or traced: junctions and seams within this distance are joined, mesh units.
-  /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face of a pair was joined to the
-  /// second face, whose number is smaller. Reflex edges and vertices inside a joined face are not sites, so they have
-  /// no regions.
+  /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second,
+  /// smaller one. Reflex edges and vertices inside a joined face are not sites, so they have no regions.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
-  /// True if the seams were traced (VoronoiMethod::traced). As far as checks show, the sheets, seams and junctions are
-  /// those of the diagram, except for details smaller than `joined`. All sheets are closed, and the complex has the
-  /// expected Betti numbers.
+  /// True if the seams were traced (VoronoiMethod::traced). Then sheets, seams and junctions are those of the diagram
+  /// within `joined`, as far as checks show. All sheets are closed, and the complex has the expected Betti numbers.
   bool traced = false;
-  /// If traced: bound on the error of the sites of walls with two footprints, mesh units. The distance of a point of a
-  /// wall from the wall's sites exceeds its distance from the surface by at most this. A wall of the exact diagram that
-  /// the complex lacks cannot change distances by more than `label_error`.
+  /// If traced: each point of a wall with two footprints is at most this much farther from the wall's own sites than
+  /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
   double label_error = 0;
   /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
   /// between vertices, mesh units.
   double chord = 0;
-  /// True if traced, and all junctions and seams are proven. If true, each sheet, seam and junction is that of the
-  /// exact diagram of a polyhedron with flat faces. The corners of this polyhedron are within `moved` of the corners of
-  /// the mesh.
+  /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
+  /// diagram of a flat polyhedron. Its corners are within `moved` of those of the mesh.
   bool proven = false;
   /// If traced: largest displacement of a corner to make the faces flat, mesh units. 0 if the given faces are flat,
   /// except for rounding.
@@ -230,13 +220,11 @@ struct VoronoiReport {
   /// If traced: numbers of junctions inside the solid and of seams, in the whole diagram.
   std::size_t junctions = 0;
   std::size_t seams = 0;
-  /// If traced: numbers of junctions and of seams that are proven. Proven junctions and seams exist, as traced, in the
-  /// exact diagram of a polyhedron with flat faces (see `proven`).
+  /// If traced: junctions and seams that exist in this exact diagram as they were traced.
   std::size_t proven_junctions = 0;
   std::size_t proven_seams = 0;
-  /// If traced: junctions and pieces of seams that are not proven. All other junctions are proven. For each seam that
-  /// is not proven, the list contains one piece. The list also contains reflex vertices that were left out, because
-  /// their regions are thinner than 1e-7 of their lengths.
+  /// If traced: places where the proof did not succeed. Each other junction is proven. A seam is open at one place.
+  /// Reflex vertices whose regions are thinner than 1e-7 of their lengths, and left out, are also open.
   std::vector<OpenVoronoiPlace> open;
   /// If tracing failed: the reason and the position, for each attempt. Some attempts join close junctions, others keep
   /// them apart.
@@ -278,15 +266,15 @@ struct Description<VoronoiReport> {
   static constexpr std::string_view doc = "Counts of a Voronoi complex, and the result of its certification";
   static constexpr std::tuple members{
       Member{"certified", &VoronoiReport::certified, "",
-             "true if every cube passes and the Betti numbers are as expected, which proves the homology"},
+             "true if every cube passes and the Betti numbers are as expected: then the homology is proven"},
       Member{"exact", &VoronoiReport::exact, "",
              "true if each sheet, seam and junction is that of the exact diagram: all bodies are convex"},
       Member{"flatness", &VoronoiReport::flatness, "mesh units",
              "if exact or traced: bound on the distance of a triangle's corner from its face's plane"},
       Member{"joined", &VoronoiReport::joined, "mesh units",
-             "if exact or traced: junctions and seams within this distance are joined"},
+             "if exact or traced: junctions and seams within this distance are one"},
       Member{"joined_faces", &VoronoiReport::joined_faces, "",
-             "pairs of faces: the first face was joined to the second face, because rounding bends them"},
+             "pairs of faces: the first one was joined to the second one, since rounding bends them"},
       Member{"traced", &VoronoiReport::traced, "",
              "true if the seams were traced: sheets, seams and junctions are those of the diagram within rounding"},
       Member{"label_error", &VoronoiReport::label_error, "mesh units",
@@ -296,7 +284,7 @@ struct Description<VoronoiReport> {
       Member{"proven", &VoronoiReport::proven, "",
              "true if traced, and each sheet, seam and junction is proven to be that of the exact diagram"},
       Member{"moved", &VoronoiReport::moved, "mesh units",
-             "if traced: bound on the displacement of corners that makes the faces flat"},
+             "if traced: bound on the distance by which corners move so that faces are flat"},
       Member{"junctions", &VoronoiReport::junctions, "", "if traced: junctions of the whole diagram inside the solid"},
       Member{"seams", &VoronoiReport::seams, "", "if traced: seams of the whole diagram"},
       Member{"proven_junctions", &VoronoiReport::proven_junctions, "",
@@ -304,8 +292,7 @@ struct Description<VoronoiReport> {
       Member{"proven_seams", &VoronoiReport::proven_seams, "",
              "if traced: seams that are proven to exist in the exact diagram"},
       Member{"open", &VoronoiReport::open, "", "if traced: junctions and pieces of seams that are not proven"},
-      Member{"trace_problem", &VoronoiReport::trace_problem, "",
-             "reason why tracing failed; empty if it succeeded, or was not tried"},
+      Member{"trace_problem", &VoronoiReport::trace_problem, "", "reason why tracing failed; empty if it did not"},
       Member{"expected_betti", &VoronoiReport::expected, "",
              "components, tunnels, voids of the requested part of the exact diagram"},
       Member{"found_betti", &VoronoiReport::found, "", "components, tunnels, voids of the complex"},
@@ -313,15 +300,14 @@ struct Description<VoronoiReport> {
              "if certified: upper bound on the distance between the complex and the requested part of the exact "
              "diagram"},
       Member{"faces", &VoronoiReport::faces, "",
-             "faces among the sites: coplanar triangles that share edges form one face"},
+             "faces among the sites: coplanar triangles that share edges count as one face"},
       Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "reflex edges among the sites"},
       Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "reflex vertices among the sites"},
       Member{"thin_vertices", &VoronoiReport::thin_vertices, "",
-             "reflex vertices whose dual cones are thinner than 1e-3 radians: the complex represents their regions as "
-             "part of walls"},
+             "reflex vertices whose dual cones are thinner than 1e-3 radians: their regions count as part of walls"},
       Member{"grids", &VoronoiReport::grids, "", "grid positions that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "cubes that meet the solid and are not split"},
-      Member{"squares", &VoronoiReport::squares, "", "squares between cubes; a split square is counted as its parts"},
+      Member{"squares", &VoronoiReport::squares, "", "squares between cubes; of a split square, only the parts count"},
       Member{"undecided_squares", &VoronoiReport::undecided_squares, "",
              "number of squares between cubes whose borders do not determine the diagram in them"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},
@@ -347,10 +333,9 @@ struct VoronoiComplex {
   ///
   /// Columns of vertices: `radius` (float64, mesh units) is the distance from the closest site, 0 on the surface.
   /// `footprint_0` and `footprint_1` (3 x float64) are the closest points of the surface. If more than two closest
-  /// points exist, the two with the largest angle between them are stored. If only one closest point exists,
-  /// `footprint_0` and `footprint_1` both contain this point. `site_0` and `site_1` (int32) are the sites of the
-  /// footprints in the SiteTable. `separation_angle` (float64, degrees) is the angle between the footprints, seen from
-  /// the vertex.
+  /// points exist, the two with the largest angle between them are stored. If only one exists, both columns contain
+  /// this point. `site_0` and `site_1` (int32) are the sites of the footprints in the SiteTable. `separation_angle`
+  /// (float64, degrees) is the angle between the footprints, seen from the vertex.
   ///
   /// Columns of triangles: `site_a` and `site_b` (int32) are the sites of the regions on the two sides, the smaller
   /// site first. On the surface, `site_a` is -1. `separation_angle` (float32, degrees) is the angle between the two
@@ -359,7 +344,7 @@ struct VoronoiComplex {
   ///
   /// Sites in site_a and site_b are numbered as in voronoi_sites(): first faces, in the order of their smallest
   /// triangles, then reflex edges, then reflex vertices. If faces were joined (VoronoiReport::joined_faces), the
-  /// smallest number is used for all of them.
+  /// smallest number stands for all.
   ///
   /// If VoronoiReport::exact or VoronoiReport::traced, vertices also have the column `junction` (int32): 1 at a
   /// junction, 0 inside a seam or sheet.
@@ -372,31 +357,30 @@ struct VoronoiComplex {
 ///
 /// If all bodies are convex, the diagram consists of planar polygons. The distance from the border is the least of the
 /// distances from the faces' planes, so its graph bounds a convex polytope in four dimensions. The facets, ridges,
-/// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which of them
-/// exist. Sheets are divided into triangles. Some sheets get one further vertex in the middle for this division.
-/// (docs/theory/voronoi.md, "Convex solids".)
+/// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which exist. Sheets
+/// are divided into triangles without further vertices, except one in the middle of some. (docs/theory/voronoi.md,
+/// "Convex solids".)
 ///
-/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between traced seams are
-/// divided into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the
-/// solid is divided into cubes:
+/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between them are divided
+/// into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the solid is
+/// divided into cubes:
 ///
 /// Let K be the union of the surface and the walls between regions of different sites. An octree in generic position
 /// cuts space into cubes. The closest sites along the edges of cubes follow from the order of roots, or from exact
 /// signs if doubles do not decide. Squares between cubes are split into smaller squares until the border of each square
 /// determines K in the square. A cube passes the test if its boundary proves that all components of K in the cube are
-/// acyclic. A cube that does not pass is split.
+/// acyclic. Otherwise, the cube is split.
 ///
-/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell). The
-/// order complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
+/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell).
+/// This complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
 /// 2006, 5.3 and 5.4; theorem and proof: docs/theory/voronoi.md.)
 ///
 /// If VoronoiReport::certified is false, parts of the complex may be missing or wrong.
 ///
 /// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
-/// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No coordinate may have a magnitude above
-/// 1e8 times the size of the mesh. Cubes use triangles as given, so a face that rounding has bent becomes several
-/// sites.
-/// @throws InvalidMesh if the solid does not meet these conditions; InvalidOption; Cancelled; OutOfMemory.
+/// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
+/// of the mesh. Cubes use triangles as given, so a face that rounding has bent counts as several sites.
+/// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
 /// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000
 /// triangles need thousands to tens of thousands of cubes.

@@ -173,8 +173,7 @@ class SecondWorker {
     if (!take_nearest([](const OfSite&) { return true; })) return parent;
     if (only_ != nullptr) return out;
     if (take_nearest([&](const OfSite& labels) { return job_.are_apart(out.labels[0], labels); })) return out;
-    // A point of the parent serves as the further point if its site is apart from the site of the child's closest
-    // point.
+    // One of the parent's points serves as the further one if its site is apart from that of the child's closest point.
     for (std::size_t k = 0; k < parent.count; ++k) {
       if (!job_.are_apart(out.labels[0], parent.labels[k])) continue;
       out.point[1] = parent.point[k];

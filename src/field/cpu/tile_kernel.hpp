@@ -57,8 +57,7 @@ class TileScratch {
   struct Impl;
   Impl& impl() { return *impl_; }
 
-  /// Linear indices of nodes that, because of rounding, lie in no site's domain, or whose side cannot be decided in
-  /// float32.
+  /// Linear indices of nodes that no site claimed, or whose side cannot be decided in float32.
   std::vector<std::size_t> unsettled;
 
  private:

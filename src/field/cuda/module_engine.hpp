@@ -6,11 +6,9 @@
 
 namespace blum::cuda {
 
-/// Returns the module. The first call loads the module. If BLUM_CUDA_MODULE is set, it is the path of the file.
-/// Otherwise libblum_cuda.so is searched beside the library or program that contains Blum, then in the system's library
-/// folders.
-/// @throws DeviceError if the module cannot be loaded. The message lists the paths that were searched, and the reasons
-/// for failure.
+/// Returns the module. The first call loads it. If BLUM_CUDA_MODULE is set, it is the path of the file. Otherwise
+/// libblum_cuda.so is searched beside the library or program that contains Blum, then in the system's library folders.
+/// @throws DeviceError if the module cannot be loaded. Its message lists the places searched and the reasons.
 [[nodiscard]] const Module& load_module();
 
 /// Replaces the module by another function table, for tests; nullptr restores it. Existing engines keep their table.

@@ -106,9 +106,8 @@ BLUM_HD inline float float_of(std::uint32_t bits) {
 #endif
 }
 
-// Sums and products that are rounded separately. These functions are used if results must be equal on all devices, so
-// the compiler must not fuse their operations. On the host, no flag with which kernels are tested allows fused
-// operations.
+// Sums and products that are rounded separately. They are used where results must be equal on all devices, so the
+// compiler must not fuse them. On the host, no flag with which kernels are tested allows fused operations.
 BLUM_HD inline double rounded_sum(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dadd_rn(a, b);

@@ -27,9 +27,8 @@ struct VertexColumns {
 /// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). `b` leads from the edge
 /// into its first face. That face bounds the domain by (q - m) . b <= first_limit (a huge limit without a face). The
 /// second face bounds it by second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both factors 0 without a second
-/// face). `side` is not 0 if the orientations of both faces agree. It is +1 if n points out of a closed solid there,
-/// and -1 if n points into the solid; see edge_side(). Beyond the distance `reach` from the site, some surface point is
-/// always closer.
+/// face). `side` is not 0 if the orientations of both faces agree. It is +1 if n points out of a closed solid there, -1
+/// if into it; see edge_side(). Beyond the distance `reach` from the site, some surface point is always closer.
 struct EdgeColumns {
   static constexpr int midpoint = 0;  // 3 columns
   static constexpr int tangent = 3;   // 3 columns

@@ -164,8 +164,7 @@ NodeSet nodes_in_grid(const NodeBlock& block) {
   return out;
 }
 
-/// Makes the nodes of a set the next part. `steps` is the number of steps from the first node of the set to its
-/// furthest node.
+/// Makes the nodes of a set the next part. `steps` is the number of steps from its first node to its furthest one.
 void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, BlockParts& out) {
   const auto part = static_cast<std::uint16_t>(out.count++);
   std::size_t best = block_nodes;

@@ -151,8 +151,7 @@ struct Bvh::Data {
         within |= static_cast<unsigned>(distances[lane] <= limit) << lane;
       }
       if (within == 0) return limit;
-      // The candidate with the smallest approximate distance is offered first, because it usually excludes the other
-      // candidates.
+      // The candidate with the smallest approximate distance is offered first: it usually excludes the others.
       std::size_t first = 0;
       for (std::size_t lane = 1; lane < lanes; ++lane) first = distances[lane] < distances[first] ? lane : first;
       for (limit = offer(leaf, first, limit), within &= ~(1U << first); within != 0; within &= within - 1) {
@@ -418,8 +417,7 @@ void Bvh::Data::cross(const Ray& ray, double limit, const Go& go, const Visit& v
   const auto [scaled_ray, factor] = detail::scaled_direction({ray.origin * scale, ray.direction});
   const Ray& scaled = scaled_ray;
   if (!prepare(ray.origin)) return;
-  // Converts t to block units. Block units make lengths `scale` times those of the caller, and directions 1 / factor
-  // times.
+  // Converts t to block units. Lengths there are `scale` times those of the caller, and directions 1 / factor times.
   const double t_factor = factor * scale;
   double furthest = limit;
   go(scaled, furthest * t_factor, [&](std::size_t leaf) {

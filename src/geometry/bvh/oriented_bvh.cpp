@@ -63,8 +63,7 @@ class Extent {
 /// Smallest length of a sum of normals. Shorter sums have lost digits, because their squares underflow.
 constexpr double least_normal = 1e-140;
 
-/// Returns two directions orthogonal to `normal` and to each other. The first direction is as close to `along` as
-/// possible.
+/// Returns two directions orthogonal to `normal` and to each other. The first one is as close to `along` as possible.
 std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   const Vec3d flat = along - normal * dot(normal, along);
   const double size = squared_length(flat);
@@ -370,8 +369,7 @@ class PairSearch {
     std::size_t steps = std::numeric_limits<std::size_t>::max();
     run(first, steps);
   }
-  /// @param steps  number of steps after which the search ends; on return, reduced by the number of steps that were
-  ///               done. See pending().
+  /// @param steps  number of steps after which the search ends; reduced by those that were done. See pending().
   void run(const NodePair& first, std::size_t& steps) {
     pending_.push_back(first);
     for (; !pending_.empty() && steps > 0; --steps) {

@@ -181,8 +181,7 @@ class Windings {
     const auto [first, count] = crowded_[edge];
     std::size_t start = 0;
     while (patch(sides_[first + start]) != from) ++start;
-    // The front of a rising facet is towards the next facet, and its back towards the previous facet. A falling facet
-    // has its front towards the previous facet.
+    // A rising facet faces the next facet, and its back the previous one. For a falling facet it is the reverse.
     const Side& known = sides_[first + start];
     std::int64_t winding = *front_[from] + (known.rises ? 0 : facets_[known.facet()].times);
     for (std::size_t k = 1; k <= count; ++k) {

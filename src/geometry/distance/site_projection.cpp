@@ -50,8 +50,7 @@ struct SiteProjection::Data {
   Data(const MeshView& mesh, const SiteTable& sites, const Context& context);
   void add_edges(const MeshView& mesh, const SiteTable& sites);
 
-  /// The following functions return true if the query lies in a site's domain. If they return true, they set the
-  /// query's foot on the site.
+  /// The following functions return true if the query lies in a site's domain. In this case they set its foot.
   [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;
@@ -60,8 +59,7 @@ struct SiteProjection::Data {
   [[nodiscard]] std::size_t first_face() const { return positions.size() + edges.size(); }
   /// Loads data of a site into the cache.
   void prefetch(SiteId site) const;
-  /// Loads the positions of an edge or vertex into the cache. The data of the edge or vertex should already be in the
-  /// cache.
+  /// Loads the positions of an edge or vertex into the cache. Its data should be there.
   void prefetch_positions(SiteId site) const;
 };
 

@@ -54,12 +54,12 @@ std::string text_of(const PathFile& file) {
   const auto number = [](double value) { return text_of(value); };
   const auto mesh = [](const PathMesh& one) { return text_of(one); };
   const auto pose = [&](const PoseNumbers& one) { return list_of(one, number); };
-  std::string out = "{\"format\": \"" + std::string(format_name) + "\", \"version\": " +
-                    std::to_string(format_version) + ",\n\"bodies\": " + list_of(file.bodies, mesh, ",\n  ") +
-                    ",\n\"obstacles\": " + list_of(file.obstacles, mesh, ",\n  ") + ",\n\"centres\": " +
-                    list_of(file.centres, [&](const Vec3d& c) { return list_of(std::array{c.x, c.y, c.z}, number); }) +
-                    ",\n\"poses\": " +
-                    list_of(file.poses, [&](const auto& poses) { return list_of(poses, pose); }, ",\n  ");
+  std::string out =
+      "{\"format\": \"" + std::string(format_name) + "\", \"version\": " + std::to_string(format_version) +
+      ",\n\"bodies\": " + list_of(file.bodies, mesh, ",\n  ") +
+      ",\n\"obstacles\": " + list_of(file.obstacles, mesh, ",\n  ") + ",\n\"centres\": " +
+      list_of(file.centres, [&](const Vec3d& c) { return list_of(std::array{c.x, c.y, c.z}, number); }) +
+      ",\n\"poses\": " + list_of(file.poses, [&](const auto& poses) { return list_of(poses, pose); }, ",\n  ");
   if (file.clearance) out += ",\n\"clearance\": " + text_of(*file.clearance);
   if (!file.intervals.empty()) {
     const auto interval = [&](const PathInterval& one) {
@@ -153,8 +153,8 @@ class JsonPath {
     if (bodies == 0) fail("the first waypoint has no pose");
     for (std::size_t k = 0; k < file.poses.size(); ++k) {
       if (file.poses[k].size() == bodies) continue;
-      fail("waypoint " + std::to_string(k) + " has " + std::to_string(file.poses[k].size()) + " poses, but waypoint 0 has " +
-           std::to_string(bodies));
+      fail("waypoint " + std::to_string(k) + " has " + std::to_string(file.poses[k].size()) +
+           " poses, but waypoint 0 has " + std::to_string(bodies));
     }
     if (file.bodies.size() != bodies || file.centres.size() != bodies) {
       fail("there are " + std::to_string(file.bodies.size()) + " bodies and " + std::to_string(file.centres.size()) +
@@ -239,8 +239,8 @@ MotionPath PathFile::path(const std::vector<Vec3d>& default_centres) const {
 
 PathMesh describe_path_mesh(const fs::path& mesh, const fs::path& folder) {
   const FileBytes bytes = read_whole_file(mesh);
-  const auto sum = static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.span().data()), bytes.span().size()));
+  const auto sum =
+      static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.span().data()), bytes.span().size()));
   constexpr std::string_view digits = "0123456789abcdef";
   std::string hexadecimal;
   for (int shift = 28; shift >= 0; shift -= 4) hexadecimal += digits[sum >> shift & 0xfU];

@@ -143,8 +143,7 @@ void BoxPieces::find(const SurfaceMesh& mesh, const BoxCell& box, std::span<cons
     is_open_[piece] = true;
     components.add_arc(piece, arc.part);
   }
-  // A piece without an arc is a whole shell. The shell bounds a body if it contains an outermost vertex; otherwise it
-  // bounds a void.
+  // A piece without an arc is a whole shell. It bounds a body if it contains an outermost vertex, otherwise a void.
   const std::size_t first_vertex = triangles_.size() + edges_.size();
   const auto piece_of = [&](std::size_t vertex) {
     return joined_.find(static_cast<std::uint32_t>(first_vertex + vertex));

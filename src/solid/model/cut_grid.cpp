@@ -230,8 +230,7 @@ class TriangleTracer {
     }
   }
 
-  /// In each cube, gives all arcs of the triangle the same piece. The function joins the pieces that the arcs have from
-  /// edges.
+  /// In each cube, gives all arcs of the triangle the same piece. It joins the pieces that the arcs have from edges.
   void join_in_cubes() {
     beside_.clear();
     for (std::size_t arc = first_arc_; arc < out_.arcs.size(); ++arc) {

@@ -10,7 +10,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
-#include "support/temporary_folder.hpp"
+#include "unit/io/temporary_folder.hpp"
 
 namespace blum {
 namespace {

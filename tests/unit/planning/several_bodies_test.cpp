@@ -339,7 +339,8 @@ TEST(CertifiedPath, IntervalsCoverTheMotionsAndHold) {
 TEST(CertifiedPath, NamesTheFirstMotionThatIsNotFree) {
   const Scene scene{.bodies = {box({1, 1, 1})}, .obstacles = {box({1, 1, 1}, {5, 0, 0})}};
   const MotionCertifier certifier = scene.certifier();
-  MotionPath path{.centres = {{}}, .poses = {{moved({})}, {moved({0, 3, 0})}, {moved({10, -3, 0})}, {moved({5, 0, 0})}}};
+  MotionPath path{.centres = {{}},
+                  .poses = {{moved({})}, {moved({0, 3, 0})}, {moved({10, -3, 0})}, {moved({5, 0, 0})}}};
   const CertifiedPath found = certify_path(certifier, path);
   EXPECT_EQ(found.verdict, MotionVerdict::colliding);
   EXPECT_EQ(found.edge, 1U);
