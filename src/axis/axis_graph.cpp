@@ -233,8 +233,8 @@ class PatchPairs {
   }
 
  private:
-  /// Finds for each vertex the numbers of two sets of patches, one for each footprint. They are none if the vertex has
-  /// no two footprints with known sites.
+  /// Finds for each vertex the numbers of two sets of patches, one for each footprint. Both sets are `none` if the
+  /// vertex has no two footprints with known sites.
   void find_sides() {
     const MedialView& axis = parts_.view();
     for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {

@@ -10,8 +10,8 @@ namespace blum::detail {
 namespace {
 
 /// Returns the smallest value x for which at least the given share of the weight has values of at most x. The interval
-/// from `low` to `high` is halved 50 times. Parts that lie entirely outside the current interval are dropped from the
-/// sums.
+/// from `low` to `high` is halved 50 times. Parts whose values lie entirely outside the current interval are dropped
+/// from the sums.
 double quantile(std::vector<LinearPart> parts, double share, double low, double high) {
   constexpr int halvings = 50;
   double missing = 0;  // weight

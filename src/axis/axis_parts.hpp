@@ -42,8 +42,8 @@ struct LinearPart {
 /// Cost: about ten passes over the parts.
 void add_quantiles(std::vector<LinearPart> parts, AxisSpread& spread);
 
-/// Kind of an edge. It has no triangle (`curve`), one (`rim`), two of the same sheet (`inner`), two of different sheets
-/// (`crease`), or more (`seam`).
+/// Kind of an edge. An edge has no triangle (`curve`), one (`rim`), two of the same sheet (`inner`), two of different
+/// sheets (`crease`), or more than two (`seam`).
 enum class EdgePart : std::uint8_t { curve, rim, inner, crease, seam };
 
 /// Axis whose sheets are cut apart along seams and creases, and at vertices where a sheet only touches itself. Corners
@@ -92,7 +92,7 @@ class AxisParts {
 
 /// Adds to `graph` the sheets, except for their patches, and the sums over all sheets. `graph.seams` must be complete.
 /// @param homotopy_angle  triangles of at most this angle (degrees) exist for homotopy alone. Without a value, no
-///                        triangle does.
+///                        triangle exists for homotopy alone.
 /// @param seam_of_edge  for each edge of incidence().edges(): the index of its seam in `graph.seams`.
 void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
                 std::optional<double> homotopy_angle, AxisGraph& graph);

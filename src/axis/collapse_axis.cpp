@@ -49,7 +49,7 @@ class AxisCollapser {
     if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
   }
 
-  /// Returns the smaller separation angle of an edge's ends. Along a seam it is larger than the angles of the
+  /// Returns the smaller separation angle of an edge's ends. Along a seam, this angle is larger than the angles of the
   /// triangles.
   [[nodiscard]] float own_angle(std::uint32_t edge) const {
     const auto& [a, b] = incidence_.edges()[edge];

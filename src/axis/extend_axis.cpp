@@ -37,11 +37,12 @@ using detail::SearchMesh;
 using detail::StripOutline;
 
 constexpr std::size_t rims_per_range = 64;
-/// New vertices become one if their distance is at most this fraction of the radius at the rim.
+/// New vertices are merged if their distance is at most this fraction of the radius at the rim.
 constexpr double one_point = 1e-3;
 /// A rim lies on another sheet if its distance is at most this fraction of the radius, and the sheet is behind it.
 constexpr double beside = 0.05;
-/// A rim leads along a sheet if the cosine of the angle between its direction and the way there is at least this.
+/// A rim leads along a sheet if the cosine of the angle between its direction and the direction to the sheet is at
+/// least this.
 constexpr double least_lead = 0.5;
 
 /// A corner of a rim, and the point to which the rim is extended there.
@@ -49,7 +50,7 @@ struct Continued {
   RimStart start;
   bool stays = false;               ///< not extended: at the border of the solid or on another sheet
   bool is_beside_sheet = false;     ///< on another sheet: only rims that lead along this sheet are extended
-  std::optional<RimTarget> target;  ///< none if the corner stays, or if nothing is within its reach
+  std::optional<RimTarget> target;  ///< none if the corner stays, or if no surface or sheet is close enough
 };
 
 /// Triangles in front of a rim edge. They use the point numbers of fill_strip().
@@ -147,7 +148,7 @@ class AxisExtender {
     corner.stays = corner.stays || length(corner.start.outwards) == 0;
   }
 
-  /// Turns the ways of corners that lie on another sheet, or slightly beyond it, but share no vertex with it.
+  /// Turns the directions of corners that lie on another sheet, or slightly beyond it, but share no vertex with it.
   void turn_beside(const SearchMesh& sheets) {
     for (Continued& corner : continued_) {
       if (corner.stays || !corner.start.normal) continue;
@@ -172,7 +173,7 @@ class AxisExtender {
     return corner.target && !leads_away ? &*corner.target : nullptr;
   }
 
-  /// Returns for each corner the largest radius at which it still counts as lying at the border of the solid.
+  /// Returns for each corner the largest radius at which the corner is treated as lying at the border of the solid.
   [[nodiscard]] std::vector<double> radii_at_borders() const {
     std::vector<double> of_sheet(sheet_count(axis_), 0);
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -292,7 +293,7 @@ class AxisExtender {
   // --- The result.
 
   /// Makes a new vertex of each corner's target; the two targets of a pinched strip become one vertex. If a loop
-  /// consists of pinched strips, one strip is left out, because all of them together would close a hole.
+  /// consists of pinched strips, one strip is left out, because all strips together would close a hole.
   std::vector<std::uint32_t> number_new_vertices() {
     detail::UnionFind corners(rims_.corners.size());
     detail::UnionFind vertices(axis_.positions.size());

@@ -33,7 +33,7 @@ struct Meeting {
   int side = -1;    ///< 0 to 2 if the vertex lies on the side from this corner to the next
 };
 
-/// Place where the way from a border vertex along its edge leaves a triangle of another sheet.
+/// Point where the path from a border vertex along its edge leaves a triangle of another sheet.
 struct Passage {
   Edge side;
   Vec3d at;

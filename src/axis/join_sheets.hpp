@@ -36,15 +36,17 @@ struct JoinedSheets {
 /// Sheets and strips to join.
 struct SheetsToJoin {
   const SearchMesh& mesh;
-  std::size_t axis_vertices = 0;                      ///< The first vertices. These neither move nor disappear.
+  std::size_t axis_vertices = 0;                      ///< The first vertices. Vertices that neither move nor disappear.
   std::vector<std::array<std::uint32_t, 2>> borders;  ///< Outer edges of strips. Each belongs to one triangle.
-  /// For each vertex, mesh units. If the border of a strip passes another sheet within this distance, they meet.
+  /// For each vertex, mesh units. A strip meets another sheet if the strip's border passes the sheet within this
+  /// distance.
   std::span<const double> tolerance;
 };
 
 /// Joins strips to the sheets and strips on which their borders lie. Triangles are divided where borders cross them.
-/// Then each border is a chain of edges of the other sheet as well. Vertices of borders move by at most the tolerance.
-/// A sheet that meets a border at less than 15 degrees is not joined to it, because it continues the strip.
+/// After this division, each border is also a chain of edges of the other sheet. Vertices of borders move by at most
+/// the tolerance. A sheet that meets a border at less than 15 degrees continues the strip, and is not joined to the
+/// border.
 /// Merged vertices belong to no triangle, but keep their numbers. New vertices follow the others.
 /// @throws Cancelled.
 /// Cost: about 10 microseconds per border edge and edge that borders cross.

@@ -52,8 +52,8 @@ Vec3d leaf(const Complex& axis, const std::array<std::uint32_t, 2>& edge, std::u
   return squared > 0 ? out - along * (dot(out, along) / squared) : out;
 }
 
-/// Returns the cosine of the angle between the two triangles of a hinge. It is -1 if they lie in a plane or if one has
-/// no area.
+/// Returns the cosine of the angle between the two triangles of a hinge. The cosine is -1 if the triangles lie in a
+/// plane, or if one of them has no area.
 double cosine_of(const Complex& axis, const Hinge& hinge) {
   const Vec3d a = leaf(axis, hinge.vertices, hinge.triangles[0]);
   const Vec3d b = leaf(axis, hinge.vertices, hinge.triangles[1]);
@@ -125,7 +125,7 @@ class SheetJoiner {
     if (a == b) return false;
     if (std::min(size_[a], size_[b]) < few) return true;
     if (cosine > -sharp) return false;
-    // Groups that lie only along seams are as crooked as the seams, so their normals decide nothing.
+    // Groups that lie only along seams are as crooked as the seams, so their normals are not reliable.
     if (std::min(inner_size_[a], inner_size_[b]) < few) return true;
     const Vec3d p = normal_near(hinge.triangles[0]);
     const Vec3d q = normal_near(hinge.triangles[1]);
@@ -164,7 +164,7 @@ class SheetJoiner {
 };
 
 /// Joins triangles at hinges into sheets, except where two sheets meet beside a seam. A seam of the complex may zigzag
-/// around the true crease of two sheets. Then hinges connect the two sheets at the steps of the zigzag. So a hinge that
+/// around the true crease of two sheets. In such a zigzag, hinges connect the two sheets at the steps. So a hinge that
 /// touches a seam is not joined if the axis bends by 37 degrees or more. The bend is measured at the hinge itself, and
 /// between the mean normals of both groups away from the seam. A group of fewer than 8 triangles always joins the
 /// neighbour at its flattest hinge.

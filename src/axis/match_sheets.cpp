@@ -148,7 +148,8 @@ Vec3d point_in(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t k) 
   return a + (b - a) * u + (c - a) * v;
 }
 
-/// Adds points of a sheet. Each stands for the same area. They lie on triangles in proportion to the triangles' areas.
+/// Adds points of a sheet. Each point stands for the same area. The number of points on a triangle is proportional to
+/// the triangle's area.
 void add_samples(const Sheets& sheets, std::uint32_t place, double area, std::size_t count, std::vector<Sample>& out) {
   const double step = area / static_cast<double>(count);
   double passed = 0;
@@ -192,7 +193,7 @@ std::vector<Closest> closest_of(const std::vector<Sample>& samples, const Sheets
   return out;
 }
 
-/// Adds to the sheets of an axis the parts of their area that lie on sheets of the other one.
+/// Adds to the sheets of an axis the parts of their area that lie on sheets of the other axis.
 void add_overlaps(Sheets& sampled, double whole_area, Sheets& target, int points, double tolerance,
                   const Context& context) {
   const std::vector<Sample> samples = samples_of(sampled, whole_area, static_cast<std::size_t>(points));

@@ -19,7 +19,7 @@ struct Measured {
   std::vector<LinearPart> thickness, angle, wall;  ///< by triangle; `wall`: thickness between facing walls
   Vec3d corners;                                   ///< sum of the positions of all corners
   std::int64_t border_sides = 0, cut_vertices = 0;
-  bool is_shown = false;  ///< at least one triangle does not exist for homotopy alone
+  bool is_shown = false;  ///< true if some triangle does not exist for homotopy alone
 };
 
 class SheetMeasurer {

@@ -16,8 +16,8 @@
 namespace blum::detail {
 namespace {
 
-/// A key counts if its area is at least this share of the largest area of a key. In symmetrical sheets, one area is
-/// often equal to, twice or three times another. This share is far from 1, 1/2 and 1/3, so rounding decides nothing.
+/// A key is considered if its area is at least this share of the largest area of a key. In symmetrical sheets, one area
+/// is often equal to, twice or three times another. This share is far from 1, 1/2 and 1/3, so rounding decides nothing.
 constexpr double good_part = 0.41;
 
 /// Weight of vertices with a footprint on an edge between patches. It is below 1 because the footprint could belong to

@@ -18,7 +18,7 @@ constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing ma
 constexpr double nearly_none = 1e-6;        // of the way: crossings in this part are the start itself
 constexpr double passing = 0.25;            // of the radius: a way that passes a rim so closely meets its sheet
 constexpr int steps_along_rim = 3;          // A way passes rims so close to its own start without meeting them.
-/// A way that is longer than the ways beside it by more than this factor leads past what they meet.
+/// A ray that is longer than the neighbouring rays by more than this factor misses the obstacle that they meet.
 constexpr double longer_way = 1.5;
 constexpr double longest_corner = 2.5;  // the same for ways to corners
 constexpr double on_same_sheet = 0.02;  // of the radius: a sheet so close to a corner contains it
@@ -154,7 +154,7 @@ std::vector<Segment> segments_of(const Rims& rims) {
   return segments;
 }
 
-/// Returns true if a sheet forms at least 15 degrees with the plane of a start, or with the way if there is no plane.
+/// Returns true if a sheet forms at least 15 degrees with the plane of a start, or with the ray if no plane exists.
 bool forms_angle(const RimStart& start, const Vec3d& way, const Vec3d& normal) {
   if (start.normal) return std::abs(dot(normal, *start.normal)) < cosine_of_meeting;
   return std::abs(dot(normal, way)) > sine_of_meeting * length(way);
@@ -164,7 +164,7 @@ bool is_at_sheet(const RimReach::Stop& a, const RimReach::Stop& b) {
   return a.target.end == RimEnd::sheet || b.target.end == RimEnd::sheet;
 }
 
-/// Returns the length of the longer of two ways.
+/// Returns the length of the longer of two rays.
 double longest_way(const RimReach::Stop& a, const RimReach::Stop& b) {
   return std::max(length(a.target.at - a.start.at), length(b.target.at - b.start.at));
 }
@@ -280,7 +280,7 @@ std::optional<RimTarget> RimReach::find(const RimStart& start) const {
   return target;
 }
 
-/// Returns the first point of a rim of another sheet that the way passes within a tenth of the radius.
+/// Returns the first point of a rim of another sheet that the ray passes within a tenth of the radius.
 std::optional<RimTarget> RimReach::first_rim(const RimStart& start, const Vec3d& way) const {
   std::optional<RimTarget> first;
   double along = dot(way, way) * nearly_all;

@@ -63,13 +63,13 @@ class RimLines {
   Bvh bvh_;
 };
 
-/// Point of a rim, and the way outwards from it through the solid.
+/// Point of a rim, and the ray outwards from it through the solid.
 struct RimStart {
   Vec3d at;
   Vec3d outwards;                      ///< Unit length.
-  std::optional<Vec3d> normal;         ///< Plane to stay in. If none, the way follows `outwards`.
+  std::optional<Vec3d> normal;         ///< Plane to stay in. If none, the ray follows `outwards`.
   double radius = 0;                   ///< Distance to the surface.
-  double reach = 0;                    ///< Greatest length of the way.
+  double reach = 0;                    ///< Greatest length of the ray.
   std::array<std::uint32_t, 2> own{};  ///< Vertices of the axis that the point lies on or between.
   std::int32_t sheet = 0;              ///< Number of the sheet of the rim.
 };
@@ -77,7 +77,7 @@ struct RimStart {
 enum class RimEnd : std::uint8_t {
   border,  ///< the target lies on the surface of the solid
   sheet,   ///< the target lies on another sheet or its strips
-  open,    ///< the way has its full length `reach` and met nothing
+  open,    ///< the ray has its full length `reach` and met nothing
 };
 
 struct RimTarget {
@@ -86,24 +86,24 @@ struct RimTarget {
   RimEnd end = RimEnd::border;
 };
 
-/// Meshes that the way from a rim may meet. All must outlive this object.
+/// Meshes that the ray from a rim may meet. All meshes must outlive this object.
 struct RimObstacles {
   const SearchMesh* surface = nullptr;  ///< of the solid
   const SearchMesh* sheets = nullptr;   ///< vertices and triangles of the axis
   const SearchMesh* strips = nullptr;   ///< continue the sheets; start with the vertices of the axis; may be null
-  const RimLines* rims = nullptr;       ///< of the sheets; ways that nearly meet them end there
+  const RimLines* rims = nullptr;       ///< rims of the sheets; rays that nearly meet a rim end there
 };
 
 class RimReach {
  public:
-  /// @param allows_open  true if a way that meets nothing has a target at its full length. Otherwise such a way has no
+  /// @param allows_open  true if a ray that meets nothing has a target at its full length; false if such a ray has no
   ///                     target.
   RimReach(const RimObstacles& obstacles, bool allows_open) : obstacles_(obstacles), allows_open_(allows_open) {}
 
-  /// Returns the end of the way from a start. It is the closest visible surface point in the plane of the start, within
-  /// 65 degrees of its direction. If the start has no plane, it is the first surface point along its direction. If the
-  /// way first meets a sheet or strip at 15 degrees or more, the meeting point is returned instead. A way also meets a
-  /// sheet if it passes its rim within a quarter of the radius.
+  /// Returns the end of the ray from a start. The end is the closest visible surface point in the plane of the start,
+  /// within 65 degrees of its direction. If the start has no plane, the end is the first surface point along its
+  /// direction. If the ray first meets a sheet or strip at 15 degrees or more, the meeting point is returned instead. A
+  /// ray also meets a sheet if it passes the sheet's rim within a quarter of the radius.
   [[nodiscard]] std::optional<RimTarget> find(const RimStart& start) const;
 
   struct Stop {
@@ -111,8 +111,8 @@ class RimReach {
     RimTarget target;
   };
   /// Returns the inner points of a line between two targets, along the obstacles that contain them. The middle of each
-  /// segment is at most `tolerance` away from the obstacles, if 6 halvings reach that. Each point is a corner between
-  /// the planes at two targets, or the target of a start halfway between two others.
+  /// segment is at most `tolerance` away from the obstacles, if 6 halvings suffice for this. Each point is a corner
+  /// between the planes at two targets, or the target of a start halfway between two others.
   [[nodiscard]] std::vector<Vec3d> between(const Stop& a, const Stop& b, double tolerance) const;
 
  private:

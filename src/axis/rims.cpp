@@ -15,7 +15,7 @@ namespace blum::detail {
 namespace {
 
 constexpr double least_cosine = 0.174;  // of 80 degrees
-/// A way passes through a plane only if its part along the plane's normal is at least this.
+/// A direction leads through a plane only if its component along the plane's normal is at least this.
 constexpr double least_turn = 0.1;
 constexpr std::uint32_t first_of_line = 2;
 
@@ -35,8 +35,8 @@ double quality(const StripOutline& outline, const std::array<std::uint32_t, 3>& 
   return along / std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
 }
 
-/// Returns triangles over a strip. One contains both ends of the rim edge and line[k]. The others fan out from the rim
-/// edge's ends: from the first end before line[k], from the second end after it.
+/// Returns triangles over a strip. One triangle contains both ends of the rim edge and line[k]. The other triangles fan
+/// out from the rim edge's ends: from the first end before line[k], from the second end after it.
 std::vector<std::array<std::uint32_t, 3>> fans(std::uint32_t line_points, std::uint32_t k) {
   std::vector<std::array<std::uint32_t, 3>> triangles{{1, 0, first_of_line + k}};
   for (std::uint32_t p = 0; p + 1 < line_points; ++p) {
@@ -126,7 +126,7 @@ class RimFinder {
     if (!is_on_sheet && corner_of.size() > 1) stay_beside(corner_of, around, groups);
   }
 
-  /// Turns the ways of corners at one vertex so that they do not pass through the triangles of another corner.
+  /// Turns the directions of corners at one vertex so that they do not lead through the triangles of another corner.
   void stay_beside(const std::map<std::uint32_t, std::uint32_t>& corner_of, std::span<const std::uint32_t> around,
                    detail::UnionFind& groups) {
     std::vector<std::pair<std::uint32_t, Vec3d>> turned;
@@ -180,8 +180,8 @@ class RimFinder {
   }
 
   /// Returns the mean normal of triangles around a vertex, weighted by area so that slivers hardly tilt it. Small
-  /// triangles at rims are rough. So connected triangles within the vertex's radius count as well, up to about 64
-  /// triangles. A large triangle counts as one of the size of the radius.
+  /// triangles at rims are rough. So the mean includes connected triangles within the vertex's radius, up to about 64
+  /// triangles. The weight of a large triangle is that of a triangle of the size of the radius.
   [[nodiscard]] std::optional<Vec3d> tangent_normal(std::uint32_t v, std::vector<std::uint32_t> triangles) const {
     for (std::size_t k = 0; k < triangles.size() && triangles.size() < most_in_tangent; ++k) {
       for (const std::uint32_t e : incidence_.sides()[triangles[k]]) {

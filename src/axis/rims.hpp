@@ -36,7 +36,7 @@ struct StripOutline {
 [[nodiscard]] bool is_strip_inside(const StripOutline& outline, std::span<const std::array<std::uint32_t, 3>> triangles,
                                    FunctionRef<bool(const Vec3d&)> is_inside);
 
-/// Rim edge: an edge that exactly one triangle has.
+/// Rim edge: an edge that belongs to exactly one triangle.
 struct RimEdge {
   std::uint32_t triangle = 0;
   std::array<std::uint32_t, 2> vertices{};  ///< Ends, in the order of the triangle.
@@ -52,8 +52,8 @@ struct RimCorner {
   std::uint32_t vertex = 0;
   Vec3d outwards;               ///< Unit vector in the tangent plane, away from the triangles; 0 if unknown.
   std::optional<Vec3d> normal;  ///< Unit normal of the tangent plane; none if a seam ends here or no triangle has area.
-  bool is_on_sheet = false;     ///< True if another group of triangles at the vertex has no rim edge there.
-  /// True if the way leads through another group of triangles at the vertex, at 15 degrees or more. `outwards` then
+  bool is_on_sheet = false;     ///< True if another group of triangles at the vertex has no rim edge at the vertex.
+  /// True if `outwards` leads through another group of triangles at the vertex, at 15 degrees or more. `outwards` then
   /// lies in the planes of both groups, or is 0: see way_beside().
   bool is_beside_sheet = false;
 };
@@ -63,9 +63,9 @@ struct Rims {
   std::vector<RimCorner> corners;  ///< ordered by vertex
 };
 
-/// Returns the part of a way that lies in the planes of two sheets, if the way leads through the second sheet. The
-/// result is 0 if hardly any part of the way lies in both planes. Returns nullopt if the way does not lead through the
-/// second sheet, or if the planes form less than 15 degrees.
+/// Returns the component of a direction that lies in the planes of two sheets, if the direction leads through the
+/// second sheet. The result is 0 if hardly any component lies in both planes. Returns nullopt if the direction does not
+/// lead through the second sheet, or if the planes form less than 15 degrees.
 /// @param way     unit vector outwards, in the plane of the first sheet.
 /// @param normal  unit normal of the first sheet.
 /// @param other   unit normal of the second sheet, either sign.

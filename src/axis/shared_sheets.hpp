@@ -26,7 +26,7 @@ struct ExtendedSheets {
   double unshared_length = 0;  ///< Length of the edges that lie on other sheets without sharing an edge.
 };
 
-/// Places where sheets can share vertices.
+/// Positions where sheets can share vertices.
 struct SheetContacts {
   std::vector<std::array<std::uint32_t, 2>> borders;  ///< Outer edges of strips.
   std::vector<std::array<std::uint32_t, 2>> gaps;     ///< Rim edges whose strip was left out.
@@ -38,7 +38,7 @@ struct SheetContacts {
 /// through them. A join that would change the Betti numbers is left out. Vertices of the axis keep their order, except
 /// for those that only removed curves have.
 /// @param axis       with radii. Its vertices are the first ones of `apart`.
-/// @param is_inside  returns true for points in the solid. Triangles are added only there.
+/// @param is_inside  returns true for points in the solid. Triangles are added only in the solid.
 /// @throws Cancelled.
 [[nodiscard]] ExtendedSheets share_vertices(const ExtendedSheets& apart, const Complex& axis,
                                             const SheetContacts& contacts, FunctionRef<bool(const Vec3d&)> is_inside,

@@ -122,11 +122,11 @@ constexpr std::size_t most_in_batch = 256;
 /// where the radius is 0.
 constexpr double part_of_radius = 0.5;
 constexpr double nothing = 1e-6;
-/// The total move of a cell is limited by this fraction of the largest radius around it, too. A tolerance above the
-/// radius of a thin part would move its axis to its surface.
+/// The total displacement of a cell is also limited by this fraction of the largest radius around it. A tolerance above
+/// the radius of a thin part would move its axis to its surface.
 constexpr double part_of_largest_radius = 0.15;
-/// Rims, seams and curves may move by this fraction of the limit for sheets. It is small because a coarse border is
-/// more visible than a coarse sheet.
+/// Rims, seams and curves may move by this fraction of the limit for sheets. This fraction is small because a coarse
+/// border is more visible than a coarse sheet.
 constexpr double part_of_borders = 0.4;
 
 /// Returns true if `is` holds for any ring vertex of the fans, or for the other end of any border edge in the chain.
@@ -236,7 +236,7 @@ void SheetDecimator::take_batch(double limit) {
     if (is_touched(v)) continue;
     Look& look = looks_[k];
     is_waiting_[v] = 0;
-    // A removal next to a neighbour may have made this one invalid.
+    // A removal next to a neighbour may have made this contraction invalid.
     if (look.candidate && is_any_of(std::span(look.fans).first(look.fan_count), look.chain, is_touched))
       look_at(v, limit, look);
     if (look.candidate) take(v, look);

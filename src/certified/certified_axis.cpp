@@ -40,7 +40,8 @@ double checked_tolerance(double tolerance) {
 }
 
 /// Returns the forms to try, in the order of preference.
-/// @param is_given  true if sheets were pruned. Then the axis exists only as a complex, which lean() cannot fit.
+/// @param is_given  true if sheets were pruned. In this case, the axis exists only as a complex, which lean() cannot
+///                  fit.
 std::vector<AxisForm> forms_of(const MedialAxisReport& report, std::optional<double> tolerance, bool is_given) {
   const double most = checked_tolerance(tolerance.value_or(0.25 * least_spacing(report)));
   std::vector<AxisForm> forms;
@@ -242,7 +243,7 @@ CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify, const 
                              "the grid was moved by " + rounded_text(step) + " voxels; before the move: " + reason});
     const bool is_better = next.report.topology_matches && next.mismatches.size() < best.mismatches.size();
     if (is_better) std::swap(best, next);
-    // The time of grids that were tried in vain counts, too.
+    // The times of grids that were not kept are included.
     best.phases.insert(best.phases.end(), next.phases.begin(), next.phases.end());
   }
   return best;

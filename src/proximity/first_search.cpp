@@ -20,7 +20,7 @@ constexpr std::size_t search_grain = 8;
 constexpr std::size_t sweep_grain = 32;
 
 /// Positions along an axis of a side of one box, and of the opposite side of another, at the start and the end. The
-/// first box is above the other while the first side is above the other one.
+/// first box is above the second box while the first side is above the second side.
 struct Sides {
   double start, other_start;
   double end, other_end;
@@ -39,8 +39,8 @@ bool for_each_sides(const MovingBox& a, const MovingBox& b, const Visit& visit) 
   return true;
 }
 
-/// Returns a lower bound of the times at which two boxes touch; infinite if they never do. It is too low by a few
-/// units in the last place at most.
+/// Returns a lower bound of the times at which two boxes touch; infinite if they never do. The bound is too low by at
+/// most a few units in the last place.
 double touch_time(const MovingBox& a, const MovingBox& b) {
   constexpr double margin = 0x1p-50;  // four roundings
   double enter = 0;
@@ -192,7 +192,7 @@ void FirstSearch::test(const Side& side, std::uint32_t first, std::uint32_t seco
   if (of_pair == infinite || !(rank < best)) return;
   const FourMovingPoints four = side.points(first, second);
   rank.time = best.time;
-  // At the time of the best contact, only pairs before it in the order of results count.
+  // At the time of the best contact, only pairs that precede it in the order of results are better.
   const double before = best.time > 1 ? detail::after_all_times : best.time + (rank < best ? step_ : 0);
   if (are_apart(until(four, before), side.is_edge() ? 2 : 1, options_.min_separation)) return;
   const auto kinds = side.is_edge() ? FeatureKinds::edge_edge : FeatureKinds::vertex_face;
@@ -219,8 +219,8 @@ void FirstSearch::look_at(const Side& side, const Feature& feature) {
   for (const auto& [of_pair, partner] : partners) test(side, feature.index, partner, of_pair, best);
 }
 
-/// Tests all pairs that may precede the best contact, in the order of the hierarchies. For one object this is faster
-/// than look_at() for all features: each has few partners, and touches most of them at the start.
+/// Tests all pairs that may precede the best contact, in the order of the hierarchies. For one object, this is faster
+/// than look_at() for all features: each feature has few partners, and touches most of them at the start.
 void FirstSearch::sweep(const Side& side) {
   const MovingBoxBvh& own = side.is_edge() ? side.a.edges() : side.a.vertices();
   parallel_for(context_, own.block_count(), sweep_grain, "first contact", [&](const WorkRange& range) {

@@ -18,8 +18,8 @@
 namespace blum {
 
 /// Finds the first contact of moving objects, by branch and bound. A pair of features is tested only if it may precede
-/// the best contact that is known. Its boxes must touch before that contact, or at the same time if the order of
-/// results favours the pair.
+/// the best contact that is known. The boxes of the pair must touch before the best contact, or at the same time if the
+/// pair precedes it in the results.
 class FirstSearch {
  public:
   FirstSearch(const ImpactOptions& options, const Context& context);
@@ -30,7 +30,7 @@ class FirstSearch {
   void add(ObjectId first, const MovingObject& a, ObjectId second, const MovingObject& b);
 
   /// Returns true if no contact of these objects can be the first one.
-  /// @param bound  a lower bound of the times of their contacts.
+  /// @param bound a lower bound on the times of the objects' contacts.
   [[nodiscard]] bool is_hopeless(ObjectId first, ObjectId second, double bound) const;
 
   /// Returns a lower bound of the reported times at which features in two boxes meet; infinite if they never touch.
@@ -40,7 +40,7 @@ class FirstSearch {
   [[nodiscard]] const std::optional<FirstContact>& result() const { return best_; }
 
  private:
-  /// Place of a pair of features in the order of results.
+  /// Position of a pair of features in the order of results.
   struct Rank {
     double time = std::numeric_limits<double>::infinity();
     ObjectId first, second;

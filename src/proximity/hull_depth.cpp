@@ -52,8 +52,9 @@ class Difference {
   std::span<const Vec3d> second_;
 };
 
-/// A polytope in the Minkowski difference, whose vertices are vertices of the difference. It grows where its border is
-/// closest to the origin (expanding polytope algorithm, van den Bergen 2001). All decisions on its shape are exact.
+/// A polytope in the Minkowski difference, whose vertices are vertices of the difference. The polytope grows where its
+/// border is closest to the origin (expanding polytope algorithm, van den Bergen 2001). All decisions about the shape
+/// of the polytope are exact.
 class GrowingPolytope {
  public:
   explicit GrowingPolytope(const Difference& difference) : difference_(difference) {}
@@ -186,7 +187,7 @@ class GrowingPolytope {
         }
       }
     }
-    // A face may be visited after its neighbour was added to the horizon only if that neighbour stays.
+    // If a neighbour of a face was added to the horizon, the face may be visited later only if the neighbour stays.
     std::map<std::uint32_t, std::uint32_t>
         from;  // for each vertex of the horizon: the new face whose edge begins there
     std::map<std::uint32_t, std::uint32_t> to;

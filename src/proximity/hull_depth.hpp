@@ -13,7 +13,8 @@ namespace blum::detail {
 struct HullDepth {
   double lower = 0;
   double upper = 0;
-  Vec3d direction;  ///< Unit vector. A translation by `upper` along it separates the hulls. Zero if they are apart.
+  Vec3d direction;  ///< Unit vector. A translation by `upper` along `direction` separates the hulls. Zero if the hulls
+                    ///< are apart.
 };
 
 /// Returns the least translation that separates the convex hulls of two sets of points.

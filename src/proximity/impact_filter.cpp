@@ -12,8 +12,8 @@
 namespace blum::detail {
 namespace {
 
-/// A point of each of two features, approximately the closest ones. Their rounding errors are small compared to the
-/// features. If features are thin, they need not be the closest points.
+/// A point of each of two features, approximately the closest ones. The rounding errors of these points are small
+/// compared to the features. If features are thin, the points need not be the closest points.
 struct ClosestPair {
   Vec3d first;
   Vec3d second;
@@ -55,7 +55,7 @@ ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, cons
     const double r = (b * d - a * e) / determinant;
     if (s >= 0 && s <= 1 && r >= 0 && r <= 1) return {end * s, other_start + other_along * r};
   }
-  // Otherwise one of the closest points is an end of a segment.
+  // If the lines' closest points lie outside the segments, one of the closest points is an end of a segment.
   const Vec3d other_end = other_start + other_along;
   ClosestPair best{on_segment(end, other_start), other_start};
   for (const ClosestPair& pair : {ClosestPair{on_segment(end, other_end), other_end},
@@ -68,8 +68,8 @@ ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, cons
 
 constexpr double unit_roundoff = 0x1p-53;
 
-/// A polynomial, given by its Bernstein coefficients over [0, 1]. Its values in [0, 1] lie between the least and the
-/// largest coefficient.
+/// A polynomial, given by its Bernstein coefficients over [0, 1]. The values of the polynomial in [0, 1] lie between
+/// the least and the largest coefficient.
 template <std::size_t size>
 using Bernstein = std::array<double, size>;
 
@@ -136,8 +136,8 @@ Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
 }
 
 /// Two features, given by the vectors u, v and w between their points. Two edges meet if a + s * u = b + r * v; a
-/// vertex a + w and a face meet if w = s * u + r * v. For edges, w = b - a. With n = u x v, s * n is w x v. Also, r * n
-/// is w x u for edges and u x w for a face.
+/// vertex a + w and a face meet if w = s * u + r * v. For edges, w = b - a. With n = u x v, s * n is w x v. For edges,
+/// r * n is w x u; for a face, r * n is u x w.
 class Filter {
  public:
   Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance, double before)
@@ -215,7 +215,8 @@ class Filter {
   static constexpr double volume_rounding = 256 * unit_roundoff;
   static constexpr double area_rounding = 64 * unit_roundoff;
   static constexpr double height_rounding = 64 * unit_roundoff;
-  // Limits on the number of intervals examined. After that number, integer arithmetic takes about as long.
+  // Limits on the number of intervals examined. The examination of more intervals would take longer than integer
+  // arithmetic.
   static constexpr int most_looks_for_meeting = 96;
   static constexpr int most_looks_for_approach = 10000;
   static constexpr double least_width = 0x1p-44;
@@ -224,7 +225,7 @@ class Filter {
   /// than rounding.
   static bool is_in_range(double magnitude) { return magnitude > 1e-80 && magnitude < 1e90; }
 
-  /// Returns false if one of the features certainly does more than shift.
+  /// Returns false if one of the features certainly does more than translate.
   [[nodiscard]] bool may_only_shift() const { return u_.start == u_.end && v_.start == v_.end; }
 
   /// Returns the largest time on the grid of reported times that is not above `low`.
@@ -239,7 +240,7 @@ class Filter {
   }
 
   /// Returns `meets` if the features certainly meet in an interval and the interval is at most as long as the
-  /// tolerance. Returns `never` if they certainly do not meet in it.
+  /// tolerance. Returns `never` if the features certainly do not meet in the interval.
   [[nodiscard]] FilteredImpact::Answer look_at(const Interval& interval) const {
     using Answer = FilteredImpact::Answer;
     const Bernstein<4> volume = part(volume_, interval.low, interval.high);
@@ -271,7 +272,7 @@ class Filter {
     return width <= narrow && width >= too_narrow && are_apart_in(interval, 0) ? Answer::never : Answer::unknown;
   }
 
-  /// Returns true if the features are certainly further apart than a distance throughout an interval. It tests the
+  /// Returns true if the features are certainly further apart than a distance throughout an interval. The test uses the
   /// direction between their closest points at the middle of the interval. Heights along this direction are linear in
   /// time.
   [[nodiscard]] bool are_apart_in(const Interval& interval, double distance) const {

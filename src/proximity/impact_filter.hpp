@@ -10,8 +10,8 @@ namespace blum::detail {
 
 enum class FeatureKinds : std::uint8_t { vertex_face, edge_edge };
 
-/// Times of impact are multiples of 2^-depth: the first contact, rounded down. So they do not depend on the arithmetic
-/// that decides. Returns the least depth for which such times are early by at most the tolerance.
+/// Times of impact are multiples of 2^-depth: the first contact, rounded down. So times of impact do not depend on the
+/// arithmetic that computes them. Returns the least depth for which times of impact are early by at most the tolerance.
 [[nodiscard]] int time_depth(double tolerance);
 
 /// The result for two features, as far as fast arithmetic can decide it.
@@ -24,15 +24,16 @@ struct FilteredImpact {
 /// Later than any time of impact.
 inline constexpr double after_all_times = 2;
 
-/// Returns the time at which two moving features meet, if they do. Exact: uses filtered_impact() if that decides, else
-/// integers of any size.
-/// @param before  a multiple of 2^-time_depth(options.tolerance). Returns nullopt for pairs that meet then or later.
+/// Returns the time at which two moving features meet, if they do. The result is exact: filtered_impact() is used if it
+/// decides, otherwise integers of any size.
+/// @param before  a multiple of 2^-time_depth(options.tolerance). Returns nullopt for pairs that meet at this time or
+///                later.
 [[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
                                            const ImpactOptions& options, double before = after_all_times);
 
 /// Returns the time at which two moving features meet, if doubles or integers of a fixed width can decide it, else
-/// `unknown`. It never returns a wrong answer.
-/// @param before  as for impact(). Returns `never` or a later time for pairs that meet then or later.
+/// `unknown`. The function never returns a wrong answer.
+/// @param before  as for impact(). Returns `never` or a later time for pairs that meet at this time or later.
 [[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds,
                                              const ImpactOptions& options, double before = after_all_times);
 

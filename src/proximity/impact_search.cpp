@@ -41,7 +41,7 @@ namespace {
 /// end. Returns an empty list if no two used vertices have the same position at the start.
 std::vector<std::uint32_t> places(const MeshView& mesh, std::span<const Vec3d> end) {
   const std::vector<std::uint32_t> first = weld_clusters(mesh.vertices);
-  // True for a vertex that is the first of several at its start position.
+  // True for a vertex that is the first of several vertices at its start position.
   std::vector<bool> is_shared(first.size(), false);
   for (std::uint32_t v = 0; v < first.size(); ++v) {
     if (first[v] != v) is_shared[first[v]] = true;
@@ -119,8 +119,8 @@ double rounding_of(const std::array<Vec3d, 4>& points) {
   return 0x1p-48 * most;
 }
 
-/// For each direction: the gap between the first points and the other points if the first are above, and if they are
-/// below. A negative gap means that they are not.
+/// For each direction: the gap between the first points and the other points, if the first points are above or below
+/// the others. A negative gap means that the points are not separated.
 struct Gaps {
   Heights above;
   Heights below;

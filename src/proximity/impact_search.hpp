@@ -22,7 +22,7 @@ void check_motion(const MeshView& mesh, std::span<const Vec3d> end);
 void grow(MovingBox& box, double min_separation);
 
 /// The features of a mesh between two frames. Vertices with equal positions in both frames count as one vertex,
-/// represented by the smallest of their indices. Only vertices that the mesh uses count.
+/// represented by the smallest of their indices. Vertices that the mesh does not use are ignored.
 class MovingFeatures {
  public:
   /// @param mesh  the mesh at the start. It must outlive this object.
@@ -30,7 +30,7 @@ class MovingFeatures {
   MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end, const Context& context);
 
   [[nodiscard]] const std::vector<std::uint32_t>& vertices() const { return vertices_; }
-  /// Returns each edge once, as two representing vertices, the smaller one first.
+  /// Returns each edge once, as two representing vertices, the vertex with the smaller index first.
   [[nodiscard]] const std::vector<Segment>& edges() const { return edges_; }
   [[nodiscard]] std::span<const Triangle> faces() const { return mesh_.triangles; }
 
@@ -73,7 +73,7 @@ class MovingObject {
  public:
   /// @param mesh            the mesh at the start. It must outlive this object.
   /// @param end             positions of the vertices at the end. They must outlive this object.
-  /// @param min_separation  features at this distance or less count as meeting.
+  /// @param min_separation  features at this distance or less are treated as meeting.
   MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation, const Context& context);
 
   [[nodiscard]] const MovingFeatures& features() const { return features_; }
@@ -98,13 +98,13 @@ class ImpactSearch {
  public:
   ImpactSearch(const ImpactOptions& options, const Context& context) : options_(options), context_(context) {}
 
-  /// Returns the colliding pairs of a vertex of one object and a face of another object or of the same one, in rising
-  /// order.
+  /// Returns the colliding pairs of a vertex of one object and a face of another object or of the same object, in
+  /// ascending order.
   /// @throws OutOfMemory, Cancelled.
   [[nodiscard]] std::vector<VertexFaceCollision> vertices_and_faces(const MovingObject& of_vertices,
                                                                     const MovingObject& of_faces);
   /// Returns the colliding pairs of edges, in rising order. For two objects, each pair begins with the edge of the
-  /// first object. For one object, it begins with the smaller edge.
+  /// first object. For one object, each pair begins with the smaller edge.
   [[nodiscard]] std::vector<EdgeEdgeCollision> edges_and_edges(const MovingObject& a, const MovingObject& b);
 
   [[nodiscard]] std::size_t box_pairs() const { return box_pairs_; }

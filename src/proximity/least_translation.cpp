@@ -31,8 +31,8 @@
 namespace blum::detail {
 namespace {
 
-/// Corners that lie over the plane of a neighbour by less than this count as in the plane. Lengths are scaled to about
-/// 1.
+/// Corners that are above the plane of a neighbour by less than this are treated as points of the plane. Lengths are
+/// scaled to about 1.
 constexpr double flat = 1e-13;
 
 /// A solid of a pair, in the units of the search.
@@ -98,7 +98,8 @@ std::vector<Vec3d> used_vertices(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Returns true if a surface is convex at each of its edges, and a sphere in shape. Such a surface is convex.
+/// Returns true if a surface is convex at each of its edges, and a sphere in shape. A surface with both properties is
+/// convex.
 bool is_convex(const TriangleMesh& mesh, const std::vector<SideOf>& sides, std::size_t parts) {
   if (parts != 1) return false;
   if (used_vertices(mesh).size() + mesh.triangles.size() != sides.size() / 2 + 2) return false;
@@ -132,7 +133,7 @@ std::vector<Vec3d> vertex_of_each_part(const TriangleMesh& mesh) {
 }
 
 /// Returns the normals of the parts with the largest area, at most `most`. Normals that differ by less than 0.6 degrees
-/// count as one.
+/// are treated as one normal.
 std::vector<Vec3d> largest_normals(const TriangleMesh& mesh, std::size_t most) {
   std::vector<std::pair<double, std::uint32_t>> order;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) order.emplace_back(-length(normal_of(mesh, t)), t);
@@ -325,7 +326,7 @@ std::vector<Vec3d> OverlappingSolids::directions(const Vec3d& best) const {
   return distinct;
 }
 
-/// Halves the range between a length that separates the solids and a shorter one that does not.
+/// Halves the range between a length that separates the solids and a shorter length that does not.
 void OverlappingSolids::shorten_between(const Vec3d& direction, double free, Vec3d& best) {
   double blocked = 0;
   const double least = 1e-13;

@@ -8,7 +8,7 @@
 namespace blum::detail {
 
 /// Returns the bounds that ProximityScene::least_translation() returns.
-/// @throws as that function.
+/// @throws as ProximityScene::least_translation().
 [[nodiscard]] LeastTranslation least_translation(const TwoObjects& two, const TranslationOptions& options,
                                                  const Context& context);
 

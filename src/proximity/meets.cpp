@@ -22,7 +22,7 @@ using NodePair = OrientedBvh::NodePair;
 constexpr std::size_t steps_per_part = 4096;
 constexpr std::size_t places_per_range = 16;
 
-/// Two different objects that may meet, with the second one at any place.
+/// Two different objects that may meet, with any transform of the second object.
 class Couple {
  public:
   Couple(const SceneObject& a, const SceneObject& b, const RigidTransform& place_of_b)
@@ -94,7 +94,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> first_meeting_pair(const 
 }
 
 /// Returns true if the objects meet. A search of many steps runs in rounds. In each round, threads search below pairs
-/// of nodes for some steps. The pairs that remain are those of the next round.
+/// of nodes for some steps. The pairs of nodes that remain are examined in the next round.
 bool meet_in_rounds(const Couple& couple, CandidateLimit& candidates, const Context& context) {
   MeetSearch search(couple, candidates);
   const NodePair whole = couple.whole();
@@ -144,8 +144,8 @@ void check_nth(std::size_t k, const RigidTransform& place) {
   }
 }
 
-/// Checks all places with the threads of the context. For many poses that are far apart, checks take a quarter of the
-/// time.
+/// Checks all transforms with the threads of the context. For many transforms that are far apart, checks take a quarter
+/// of the time.
 void check_all(std::span<const RigidTransform> places, const Context& context) {
   constexpr std::size_t checks_per_range = 512;
   std::vector<std::size_t> wrong((places.size() + checks_per_range - 1) / checks_per_range, places.size());
@@ -167,7 +167,7 @@ std::vector<std::uint8_t> meet_at(const SceneObject& first, const SceneObject& s
   std::vector<std::uint8_t> out(places.size());
   CandidateLimit candidates(context);
   parallel_for(context, places.size(), places_per_range, "places", [&](const WorkRange& range) {
-    // Places often follow each other closely, as along a path. So the pair that met last may meet again.
+    // Successive transforms often differ only slightly, as along a path. So the pair that met last may meet again.
     std::optional<std::pair<std::uint32_t, std::uint32_t>> last;
     for (std::size_t k = range.begin; k < range.end && !candidates.look(); ++k) {
       const Couple couple(first, second, places[k]);

@@ -32,8 +32,8 @@ struct Overlap {
 };
 
 /// Returns the overlap: the set of points around which the surfaces wind twice or more.
-/// @param surfaces  the surfaces of one or two solids, closed, facing outwards. If they cross themselves, the points
-/// that they wind around twice also count.
+/// @param surfaces  the surfaces of one or two solids, closed, facing outwards. If the surfaces cross themselves, the
+/// result also contains the points around which a surface winds twice.
 /// @throws Cancelled.
 [[nodiscard]] Overlap overlap_of(const MeshView& surfaces, const Context& context);
 
@@ -43,8 +43,9 @@ struct Overlap {
 [[nodiscard]] std::vector<std::uint32_t> patches_of(const Overlap& overlap,
                                                     FunctionRef<bool(std::uint32_t, std::uint32_t)> are_neighbours);
 
-/// Returns the curves in which triangles of different labels meet. A curve is a chain of edges. It is closed, or each
-/// of its ends is a vertex at which one, three or more such edges meet.
+/// Returns the curves in which triangles of different labels meet. A curve is a chain of edges between triangles of
+/// different labels. The curve is closed, or each of its ends is a vertex at which one, three or more of these edges
+/// meet.
 /// @param triangles  the triangles to consider. Each of their edges must be an edge of two of them.
 [[nodiscard]] std::vector<std::vector<Vec3d>> border_curves(const TriangleMesh& mesh,
                                                             const std::vector<std::uint32_t>& labels,

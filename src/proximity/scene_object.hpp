@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// An object of a scene: a mesh, its transform into the scene (its place), and a hierarchy of boxes over the mesh.
+/// An object of a scene: a mesh, its transform into the scene (called place), and a hierarchy of boxes over the mesh.
 class SceneObject {
  public:
   SceneObject(const MeshView& mesh, ObjectOptions options, const Context& context);
@@ -37,11 +37,11 @@ class SceneObject {
   /// Returns a box around the whole object, in scene coordinates.
   [[nodiscard]] Box3 bounds() const;
 
-  /// Returns the vertices of a primitive. Those of a segment or point are repeated.
+  /// Returns the vertices of a primitive. The vertices of a segment or point are repeated.
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
-  /// Returns the positions of a primitive's vertices in the scene.
+  /// Returns the positions of a primitive's vertices in the scene, with the object's own transform.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
-  /// Returns the positions of a primitive's vertices with the object at another place.
+  /// Returns the positions of a primitive's vertices in the scene, with another transform of the object.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive, const RigidTransform& place) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   /// Returns the positions of all vertices in the scene.

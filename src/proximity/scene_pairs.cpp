@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t blocks_per_range = 16;
 
-/// Returns a bound on the coordinates that occur in computations with an object at a place.
+/// Returns a bound on the coordinates that occur in computations with an object and its transform.
 double largest_coordinate(const SceneObject& object, const RigidTransform& place) {
   // A transformed point is at most sqrt(3) times as far from the origin as the largest coordinate, plus the
   // translation.
@@ -148,7 +148,7 @@ struct Partner {
   bool is_second;  ///< true if the partner is the second object of the pair
 };
 
-/// Searches, for each primitive of a block, the closest primitive of other objects or of the same one.
+/// Searches, for each primitive of a block, the closest primitive of other objects or of the same object.
 class BlockSearch {
  public:
   BlockSearch(const OrientedBvh& bvh, std::size_t block, double max_distance, CandidateLimit& candidates)
@@ -195,8 +195,8 @@ class BlockSearch {
     return furthest;
   }
 
-  /// Returns the largest primitive of object `other` that may still be the closest one of a primitive of this block. If
-  /// all primitives of the block have a partner at distance zero, only partners that precede it are better.
+  /// Returns the largest index of a primitive of object `other` that may still be closest to a primitive of this block.
+  /// If all primitives of the block have a partner at distance zero, only partners that precede it are better.
   [[nodiscard]] std::uint32_t last_of(ObjectId other) const {
     std::uint32_t last = 0;
     for (std::size_t k = 0; k < primitives_.size(); ++k) {
@@ -276,8 +276,8 @@ std::vector<KeyedIndex> sorted_order(const std::vector<const PrimitivePair*>& pa
   std::vector<KeyedIndex> order(pairs.size());
   std::vector<KeyedIndex> scratch;
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k].index = k;
-  // One stable sort for each column, the last column first. Columns with equal values are skipped; most scenes have few
-  // objects.
+  // One stable sort for each column, the last column first. Columns in which all values are equal are skipped, because
+  // most scenes have few objects.
   for (std::size_t column = 4; column-- > 0;) {
     if (!varies[column]) continue;
     for (KeyedIndex& one : order) one.key = keys[one.index][column];

@@ -20,11 +20,11 @@ namespace blum::detail {
 /// The closest pair found so far, of one primitive or of two objects.
 struct Closest {
   std::optional<PrimitivePair> pair;
-  double limit = 0;  ///< pairs further away do not count
+  double limit = 0;  ///< pairs further away are ignored
 
   void offer(const PrimitivePair& other);
-  /// Returns true if a partner cannot replace the closest one at any distance. This is so if the closest one is at
-  /// distance 0 and its (object, primitive) is smaller.
+  /// Returns true if a partner cannot replace the closest partner, whatever its distance. This is the case if the
+  /// closest partner is at distance 0, and has a smaller (object, primitive).
   [[nodiscard]] bool rules_out(ObjectId object, std::uint32_t primitive) const {
     return limit == 0 && pair && std::pair(object, primitive) > std::pair(pair->second_object, pair->second);
   }
@@ -35,7 +35,7 @@ struct Closest {
 
 /// Gaps of boxes are computed in the hierarchies' coordinates, but distances from rounded positions in the scene.
 /// Returns a bound on the difference that rounding in the transforms of both objects causes.
-/// @param place_of_b  is used instead of the place of the second object.
+/// @param place_of_b is used instead of the transform of the second object.
 [[nodiscard]] double position_slack(const SceneObject& a, const SceneObject& b, const RigidTransform& place_of_b);
 
 [[nodiscard]] PrimitivePair exchanged(const PrimitivePair& pair);
@@ -63,7 +63,7 @@ class ObjectPair {
   [[nodiscard]] const SceneObject& a() const { return *a_; }
   [[nodiscard]] const SceneObject& b() const { return *b_; }
   [[nodiscard]] bool is_self() const { return first_ == second_; }
-  /// Returns the transform from the coordinates of the second object to those of the first.
+  /// Returns the transform from the coordinates of the second object to the coordinates of the first object.
   [[nodiscard]] const RigidTransform& place() const { return place_; }
   /// Returns the amount that must be added to distances in the scene for searches in the first object's coordinates,
   /// because positions are rounded.
@@ -111,7 +111,8 @@ using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
 
 /// Returns the closest pair of each primitive.
 /// @param objects  number of objects in the scene.
-/// @param is_wanted  callable: returns true for primitives whose pairs are needed. Others may have no pair.
+/// @param is_wanted  callable: returns true for primitives whose pairs are needed. All other primitives may have no
+///                   pair.
 [[nodiscard]] ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                                        FunctionRef<bool(ObjectId, std::uint32_t)> is_wanted, const Context& context,
                                        ProximityReport& report);
@@ -171,7 +172,7 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
 /// @param objects  a pair of an object and itself.
 [[nodiscard]] bool meets_itself(const ObjectPair& objects, const Context& context);
 
-/// Rejects an object on which a query would otherwise fail after a minute.
+/// Rejects at once an object for which a query would fail after a minute.
 /// @param objects  a pair of an object and itself.
 /// @throws InvalidMesh if so many primitives share a vertex that they form more than most_candidates pairs.
 void check_neighbours(const ObjectPair& objects);

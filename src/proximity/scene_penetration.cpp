@@ -52,7 +52,7 @@ struct DeepestPoint {
 /// Facets of a surface, and their borders. A facet consists of connected triangles in one plane.
 class Facets {
  public:
-  /// @param rounding  points at most this far from a plane count as in the plane.
+  /// @param rounding  points at most this far from a plane are treated as points of the plane.
   Facets(const MeshView& mesh, double rounding);
 
   /// Position of a triangle relative to a facet, in the projection along the facet's normal.
@@ -61,7 +61,7 @@ class Facets {
     double furthest = 0;   ///< largest distance of the corners from the facet's plane
     bool is_crossed = false;
     /// If a side of the facet crosses the triangle: signed distances of the corners from the plane of this side and the
-    /// facet's normal. At least one is above 0 and one below.
+    /// facet's normal. At least one distance is above 0, and one is below.
     std::array<double, 3> sides{};
   };
 
@@ -326,7 +326,7 @@ class Search {
   }
 
   /// Cuts a part along a side of a facet of the surface, because the distance from a facet is linear over it. In
-  /// shallow contacts of large faces this yields few parts. Halving alone would need many.
+  /// shallow contacts of large faces, these cuts yield few parts. Halving alone would need many parts.
   /// @return  true if a side of a facet crosses the part.
   bool cut_along_facets(const Part& part) {
     for (const Sample& corner : part.corners) {
@@ -458,8 +458,8 @@ class SolidSurfaces {
  public:
   explicit SolidSurfaces(const Context& context) : context_(&context) {}
 
-  /// Returns the surface of the solid that an object bounds, without parts of triangles inside the solid. It winds
-  /// around each point at most once, so points around which two such surfaces wind twice are in both solids.
+  /// Returns the surface of the solid that an object bounds, without parts of triangles inside the solid. The surface
+  /// winds around each point at most once. So points around which two of these surfaces wind twice are in both solids.
   /// @throws InvalidMesh; Cancelled.
   const SolidSurface& of(ObjectId id, const SceneObject& object) {
     const auto [at, is_new] = made_.try_emplace(id);
@@ -527,8 +527,8 @@ class Body {
 
   /// Measures the depth of the part: the largest distance of a point of one label's triangles from those of the other
   /// labels. Up to 8 labels are measured together; two solids have two. An object that meets itself may have thousands
-  /// of labels. These are measured one by one, the largest reach first, until no further reach is above the depth
-  /// found.
+  /// of labels. These labels are measured one by one, those with the largest bound first, until no further bound is
+  /// above the depth found.
   void measure_depth(double tolerance, const Context& context, Penetration& out) const {
     constexpr std::size_t few = 8;
     std::set<std::uint32_t> known;
@@ -548,7 +548,7 @@ class Body {
     double reach = 0;  ///< infinite if the triangles have no common edge with other labels
   };
 
-  /// Returns the reaches of all labels, the largest first.
+  /// Returns the bounds of all labels, the largest first.
   [[nodiscard]] std::vector<Reach> reaches() const {
     std::map<std::uint32_t, Box3> boxes;
     for (const std::uint32_t t : triangles_) {
@@ -616,8 +616,8 @@ class Body {
     return out;
   }
 
-  /// Fills `surface` with the whole surface of the other solid. This is needed if a part lies in that solid without
-  /// meeting its surface.
+  /// Fills `surface` with the whole surface of the other solid. The whole surface is needed if a part lies in the other
+  /// solid without meeting its surface.
   void take_whole_surface(TriangleMesh& surface, Sources& from) const {
     const std::set<std::uint32_t> own(from.patch.begin(), from.patch.end());
     const bool is_of_first = surfaces_.is_of_first(*own.begin());
@@ -649,11 +649,11 @@ bool is_backward(const Vec3d& v) {
   return v.z < 0;
 }
 
-/// Decides, for triangles of the overlap on which two surfaces coincide, which surface they belong to. Otherwise the
-/// overlap of two equal solids would have triangles of the first solid only, and no depth. The result is as if the
-/// first solid were moved by an infinitely small step along x, and by smaller ones along y and z. So triangles whose
-/// normal is_backward() belong to the first solid. If one object meets itself, the triangle with the smaller index
-/// counts as the first.
+/// Decides, for triangles of the overlap on which two surfaces coincide, which surface they belong to. Without this
+/// decision, the overlap of two equal solids would have triangles of the first solid only, and no depth. The result is
+/// as if the first solid were moved by an infinitely small step along x, and by smaller ones along y and z. So
+/// triangles whose normal is_backward() belong to the first solid. If one object meets itself, the triangle with the
+/// smaller index is treated as that of the first solid.
 void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& overlap) {
   if (overlap.source.empty()) return;
   const Bvh bvh(surfaces.mesh, SiteTable(surfaces.mesh));
@@ -674,9 +674,9 @@ void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& ove
   }
 }
 
-/// Returns a label for each triangle of an overlap. For two objects, it is 0 or 1. If an object meets itself, it is
-/// equal for triangles of one part of the object. Triangles of a part are connected through common vertices, or through
-/// equal positions if the mesh is not welded.
+/// Returns a label for each triangle of an overlap. For two objects, the label is 0 or 1. If an object meets itself,
+/// triangles of one part of the object have the same label. Triangles of a part are connected through common vertices,
+/// or through equal positions if the mesh is not welded.
 std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
   if (!is_self) {
     std::vector<std::uint32_t> out;

@@ -11,7 +11,7 @@
 
 namespace blum::detail {
 
-/// Returns true if two objects certainly do not overlap, because their boxes do not.
+/// Returns true if two objects certainly do not overlap, because their boxes do not overlap.
 [[nodiscard]] bool are_apart(const TwoObjects& two);
 
 /// Returns, for each pair, the parts of its overlap, as ProximityScene::penetration() does. Each object is converted to

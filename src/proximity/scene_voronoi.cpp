@@ -121,14 +121,16 @@ struct CellEntry {
 class VoronoiCells {
  public:
   /// @param cell_size    side of a cell, relative to the mean side of the boxes around primitives.
-  /// @param max_distance  mesh units: pairs that are further apart do not count.
-  /// @param is_closest    true if only closest primitives are needed; false if all pairs within max_distance are.
+  /// @param max_distance  mesh units: pairs that are further apart are ignored.
+  /// @param is_closest    true if only closest primitives are needed; false if all pairs within max_distance are
+  ///                      needed.
   /// @throws Cancelled.
   VoronoiCells(const ScenePrimitives& primitives, double cell_size, double max_distance, bool is_closest,
                const Context& context);
 
-  /// Returns the cells that a primitive touches; an empty list if it touches more than 512. Such a primitive is left
-  /// over: the hierarchy handles it. So are primitives that touch a cell with more than 256 primitives near it.
+  /// Returns the cells that a primitive touches; an empty list if it touches more than 512. A primitive that touches
+  /// more cells is left over: the hierarchy handles it. Primitives that touch a cell with more than 256 primitives near
+  /// it are also left over.
   [[nodiscard]] std::span<const std::uint32_t> cells(std::uint32_t row) const;
   [[nodiscard]] bool is_left_over(std::uint32_t row) const { return is_left_over_[row] != 0; }
   /// Returns the number of primitives that are left over.
@@ -310,7 +312,8 @@ void VoronoiCells::fill_cells(double max_distance, bool is_closest, const Contex
 }
 
 /// Fills the list of a cell for closest primitives. For each primitive that touches the cell, it finds the closest
-/// primitive to the cell's middle that it is compared with. This bounds the distances of all primitives in the list.
+/// primitive to the cell's middle that it is compared with. The distance found bounds the distances of all primitives
+/// in the list.
 /// @return false if the list would be too long.
 bool VoronoiCells::fill_closest(const Bvh& bvh, std::uint32_t cell, double max_distance,
                                 std::vector<CellEntry>& out) const {
@@ -386,8 +389,8 @@ void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cell
   for (const ProximityReport& part : parts) add(part, report);
 }
 
-/// Returns an upper bound on the distance of the closest pair. For each cell, the distances of two compared primitives
-/// from the cell's middle add up to such a bound.
+/// Returns an upper bound on the distance of the closest pair. For each cell, the sum of the distances of two compared
+/// primitives from the cell's middle is an upper bound.
 double bound_of_cells(const ScenePrimitives& primitives, const VoronoiCells& cells, std::uint32_t rows,
                       double max_distance) {
   double bound = max_distance;

@@ -11,17 +11,17 @@
 
 namespace blum::detail {
 
-/// Returns the same as closest_pair(). Distances from the middles of cells bound the distance of the two objects, and
+/// Returns the result of closest_pair(). Distances from the middles of cells bound the distance of the two objects, and
 /// select the pairs of primitives that may be that close.
 [[nodiscard]] std::optional<PrimitivePair> closest_pair_by_cells(const ObjectPair& pair, std::size_t objects,
                                                                  double cell_size, double max_distance,
                                                                  const Context& context, ProximityReport& report);
 
-/// Does the same as closest_of_each(), by cells instead of hierarchies.
+/// Returns the result of closest_of_each(), computed with cells instead of hierarchies.
 void closest_of_each_by_cells(std::span<const ObjectPair> pairs, std::size_t objects, double cell_size,
                               double max_distance, const Context& context, ProximityPairs& out);
 
-/// Does the same as near_pairs() with Neighbours::left_out, by cells instead of hierarchies.
+/// Returns the result of near_pairs() with Neighbours::left_out, computed with cells instead of hierarchies.
 void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects, double cell_size, double distance,
                          const Context& context, ProximityPairs& out);
 

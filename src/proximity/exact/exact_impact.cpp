@@ -144,9 +144,9 @@ class Approach {
   void add_vertex_and_face() { add_insides(vector(1, 2), vector(1, 3), vector(1, 0), true); }
   void add_edge_and_edge() { add_insides(vector(0, 1), vector(2, 3), vector(0, 2), false); }
 
-  /// Returns the first time at which the distance of two parts is at most the limit, `points_.distance`. It is the
-  /// start, or a time at which a distance equals the limit. If a distance equals the limit at all times, it is the
-  /// first time at which the closest points lie on the parts.
+  /// Returns the first time at which the distance of two parts is at most the limit, `points_.distance`. The first time
+  /// is the start, or a time at which a distance equals the limit. If a distance equals the limit at all times, the
+  /// first time is that at which the closest points first lie on the parts.
   [[nodiscard]] std::optional<double> first(double tolerance) const {
     const RealRoots start(Polynomial{0, 1});
     const auto holds_at_start = [&](const Parts& parts) { return holds(parts, start, start.all().front()); };
@@ -236,8 +236,8 @@ class Features {
     for (std::size_t axis = 0; axis < 3; ++axis) sum = sum + normal(axis) * Polynomial{w[axis].start, w[axis].slope};
     return sum;
   }
-  /// Returns one component of a vector: the cross product of two edge vectors of the face, or of both edges. It is zero
-  /// if these do not span a plane.
+  /// Returns one component of a vector: the cross product of two edge vectors of the face, or of both edges. The vector
+  /// is zero if the edges do not span a plane.
   [[nodiscard]] const Polynomial& normal(std::size_t axis) const {
     return once(normals_[axis], [&] { return cross_component(u_, v_, axis); });
   }
@@ -246,8 +246,8 @@ class Features {
     const auto [point, from, to] = touches_[touch];
     return once(areas_[touch][axis], [&] { return cross_component(vector({from, to}), vector({from, point}), axis); });
   }
-  /// Returns a polynomial that is positive if the point of a touch lies on the line of its segment beyond its ends. If
-  /// the point lies on the segment, it is zero or negative.
+  /// Returns a polynomial that is positive if the point of a touch lies on the line of its segment beyond its ends. The
+  /// polynomial is zero or negative if the point lies on the segment.
   [[nodiscard]] const Polynomial& beyond(std::size_t touch) const {
     const auto [point, from, to] = touches_[touch];
     return once(beyond_[touch], [&] { return dot(vector({from, point}), vector({to, point})); });
@@ -316,7 +316,7 @@ class Features {
   mutable std::array<std::optional<Polynomial>, 4> beyond_;
 };
 
-/// Looks for the first root of a polynomial at which the features meet. Roots that are not before `best` do not count.
+/// Looks for the first root of a polynomial at which the features meet. Only roots before `best` are considered.
 void look_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance,
                       std::optional<double>& best) {
   if (polynomial.degree() <= 0) return;

@@ -16,7 +16,7 @@ namespace blum::detail {
                                                              double tolerance);
 
 /// Computes the results of vertex_face_impact() and edge_edge_impact() by integers alone, for any finite coordinates.
-/// Cost: about 10 to 100 times as long as filtered_impact(), if that decides the answer.
+/// Cost: about 10 to 100 times that of filtered_impact(), if filtered_impact() decides the answer.
 [[nodiscard]] std::optional<double> exact_vertex_face_impact(const FourMovingPoints& points, double tolerance);
 [[nodiscard]] std::optional<double> exact_edge_edge_impact(const FourMovingPoints& points, double tolerance);
 

@@ -102,7 +102,7 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   if (root.is_exact || root.depth >= depth) return root;
   const int low_sign = rest_.sign_at(root.low());
   const bool changes_sign = low_sign != rest_.sign_at(root.high());
-  // A guess by doubles is usually correct. It is verified by exact signs.
+  // A guess in double precision is usually correct. Exact signs verify the guess.
   constexpr unsigned double_digits = 50;
   if (changes_sign && depth <= double_digits) {
     const RealRoot guess = guessed(root, low_sign, depth);

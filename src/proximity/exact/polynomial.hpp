@@ -81,8 +81,8 @@ class Polynomial {
   std::size_t size_ = 0;
 };
 
-/// A root of a polynomial. If it is exact, its value is cell / 2^depth. Otherwise it is the only root between cell /
-/// 2^depth and (cell + 1) / 2^depth, and neither of these is a root.
+/// A root of a polynomial. If the root is exact, its value is cell / 2^depth. Otherwise, it is the only root between
+/// cell / 2^depth and (cell + 1) / 2^depth, and neither end of this interval is a root.
 struct RealRoot {
   Integer cell = 0;
   unsigned depth = 0;

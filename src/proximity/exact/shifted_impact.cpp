@@ -40,7 +40,7 @@ std::uint64_t mantissa_of(double x) {
   return (std::bit_cast<std::uint64_t>(x) & (hidden_bit - 1)) | hidden_bit;
 }
 
-/// Places of the lowest and the highest bit of coordinates along an axis.
+/// Exponents of the lowest and the highest bit of coordinates along an axis.
 struct BitRange {
   int low = std::numeric_limits<int>::max();
   int high = 0;
@@ -168,9 +168,9 @@ class Times {
   bool is_moment_ = false;  ///< true if only the time `first` is left
 };
 
-/// Two features that shift, given by vectors between their points. These are the sides u and v of a face, or both
-/// edges, and the vector w between the features. Two edges meet if s u = w + r v. A vertex and a face meet if w = s u +
-/// r v.
+/// Two features that translate, given by vectors between their points. The vectors are the sides u and v of a face, or
+/// both edges, and the vector w between the features. Two edges meet if s u = w + r v. A vertex and a face meet if w =
+/// s u + r v.
 template <class Number>
 class Shifted {
  public:
