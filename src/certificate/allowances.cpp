@@ -8,7 +8,7 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double noise_of_meshes = 10;  ///< degrees: walls at a smaller angle count as one
+constexpr double noise_of_meshes = 10;  ///< degrees: walls at a smaller angle are treated as one wall
 constexpr double noise_of_images = 20;  ///< degrees: the same for solids of voxels
 constexpr double least_voxels = 8;      ///< least number of voxels along the longest side of a solid
 

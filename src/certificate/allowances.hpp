@@ -9,10 +9,11 @@
 
 namespace blum::verifier {
 
-/// Returns the side of a voxel that the verifier assumes, in scaled units. It is `options.spacing`, or 1/32 of the
-/// diagonal of the solid if that is unset. It is at most an eighth of the longest side of the solid, as on the coarsest
-/// grid. If the solid consists of voxels, it lies between half a voxel's diagonal and the whole diagonal. The edges of
-/// the axis are not used: in the middle of round parts they are as short as the facets of the surface.
+/// Returns the side of a voxel that the verifier assumes, in scaled units. The side is `options.spacing`, or 1/32 of
+/// the diagonal of the solid if that is unset. The side is at most an eighth of the longest side of the solid, as on
+/// the coarsest grid. If the solid consists of voxels, the side lies between half a voxel's diagonal and the whole
+/// diagonal. The edges of the axis are not used: in the middle of round parts they are as short as the facets of the
+/// surface.
 [[nodiscard]] double believed_voxel(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
 /// Returns how far vertices may have been moved by simplification, in scaled units: `options.deviation`, or 0 if it is
@@ -30,9 +31,9 @@ struct Allowances {
   double middle = 0;    ///< largest distance of a point of the axis from the middle
   double close = 0;     ///< largest distance of at least half of these points
   double missing = 0;   ///< largest distance of a point of the middle from the axis
-  double apart = 0;     ///< closer footprints count only at steep angles, and never between voxels
-  double lambda = 0;    ///< closer footprints never count
-  double rounding = 0;  ///< shorter lengths count as rounding errors
+  double apart = 0;     ///< closer footprints are considered only at steep angles, and never between voxels
+  double lambda = 0;    ///< closer footprints are never considered
+  double rounding = 0;  ///< shorter lengths are treated as rounding errors
   double noise = 0;     ///< degrees: walls at a smaller angle count as one
   bool of_voxels = false;
   bool of_facets = false;  ///< true if sheets between facets are judged by these facets
@@ -42,8 +43,8 @@ struct Allowances {
   static constexpr double of_thin = 3;     ///< radii: ends in thin parts are at most 1.5 diameters short
 
   /// Returns true if the axis must contain points with two footprints at this distance from each other and this
-  /// separation angle. Between close walls, only steep angles are more than roughness. Between close voxels, no angle
-  /// is.
+  /// separation angle. Between close walls, only steep angles are more than roughness. Between close voxels, every
+  /// angle may be roughness.
   [[nodiscard]] bool counts(double between, double angle) const {
     return between >= lambda && (between >= apart || (angle >= steep && !of_voxels));
   }
@@ -52,9 +53,9 @@ struct Allowances {
   [[nodiscard]] double middle_at(double radius, double size = 0) const { return limited(middle, radius / 4, size); }
   /// Returns the limit for at least half of all points.
   [[nodiscard]] double close_at(double radius, double size = 0) const { return limited(close, radius / 8, size); }
-  /// Returns the least separation angle of the two walls between which a point of a cell may lie, in degrees. It is
-  /// half of the angle that the cell claims, but not above the noise. So walls of facets count where the cell claims
-  /// them.
+  /// Returns the least separation angle of the two walls between which a point of a cell may lie, in degrees. The
+  /// result is half of the angle that the cell claims, but at most the noise angle. So walls of facets are
+  /// distinguished where the cell claims them.
   [[nodiscard]] double floor_at(double claim) const {
     constexpr double least = 0.1;
     return !of_facets ? noise : std::min(noise, std::max(0.5 * claim, least));

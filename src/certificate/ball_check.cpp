@@ -23,8 +23,8 @@ struct OwnedBall {
 
 constexpr double parts_of_diagonal = 256;
 
-/// Returns the largest distance between neighbouring samples of the axis. For an axis with finer cells, its vertices
-/// suffice.
+/// Returns the largest distance between neighbouring samples of the axis. If the cells of the axis are finer, its
+/// vertices suffice as samples.
 double step_of_balls(const MedialView& axis, double diagonal) {
   constexpr double most_balls = 50'000;
   constexpr double parts = 200;

@@ -23,9 +23,10 @@ class BallUnion {
   /// @throws Cancelled.
   BallUnion(const std::vector<Ball>& balls, const Context& context);
 
-  /// Returns the distance of a point outside the union from the union. It is the least difference between the distance
-  /// from a centre and the ball's radius. In the union it returns some value of at most 0. The search starts with ball
-  /// `first`, which costs less if that ball is nearly the closest. `first` is set to the closest ball found.
+  /// Returns the distance of a point outside the union from the union. The distance is the least difference between the
+  /// distance from a centre and the ball's radius. In the union, the function returns some value of at most 0. The
+  /// search starts with ball `first`, which costs less if that ball is nearly the closest. `first` is set to the
+  /// closest ball found.
   [[nodiscard]] double gap(const Vec3d& p, std::uint32_t& first) const;
 
   /// The balls that contained previous points, the last one first. They often contain the next point, too.

@@ -16,8 +16,8 @@
 namespace blum::verifier {
 
 inline constexpr double corner_of_diagonal = 1.0 / 64;
-/// Limits of the cost of pushing an edge inside. Without limits, edges along a hole of no width would take for ever if
-/// the tolerance is small.
+/// Limits of the cost of pushing an edge inside. Without limits, the check of edges along a hole without width would
+/// hardly end if the tolerance is small.
 struct PushBudget {
   int moves = 64;                                               ///< number of points that may be moved
   std::size_t looks = std::numeric_limits<std::size_t>::max();  ///< number of points whose depth may be computed
@@ -52,7 +52,8 @@ class BodyEdges {
   /// more than `allowed`, any point may be returned. A ball around a point inside, with the point's depth as radius,
   /// lies in the body. So only the parts between such balls are searched. In a thin wall these parts are many, so each
   /// part is first tested against the boundary.
-  /// @param looks  number of points that may still be examined; it is reduced. Returns nullopt if they do not suffice.
+  /// @param looks  number of points that may still be examined; the function reduces it. Returns nullopt if this number
+  ///               does not suffice.
   [[nodiscard]] std::optional<Stop> furthest_out(const Stop& a, const Stop& b, double allowed,
                                                  std::size_t& looks) const {
     constexpr double nearly = 1.25;  // only points that may be further out by this factor are searched
@@ -81,15 +82,15 @@ class BodyEdges {
     }
     return worst;
   }
-  /// Does the same without a limit on the number of points.
+  /// Returns the furthest point without a limit on the number of examined points.
   [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
     std::size_t looks = PushBudget().looks;
     return *furthest_out(a, b, allowed, looks);
   }
 
   /// Returns true if a segment that leaves the body can be pushed into it. The point furthest out is moved to the other
-  /// side of the closest surface point, and both halves are tested again. At an edge of the solid this soon succeeds.
-  /// Across a gap it never does.
+  /// side of the closest surface point, and both halves are tested again. At an edge of the solid, pushing soon
+  /// succeeds. Across a gap, pushing never succeeds.
   /// @param budget  is reduced by the moves and looks used.
   /// @param way     the moved points are appended, in order from a to b.
   [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, PushBudget& budget, std::vector<Vec3d>& way) const {
@@ -104,8 +105,8 @@ class BodyEdges {
   }
 
  private:
-  /// Returns a point as deep inside as `out` is outside, or, in thin parts, a quarter as deep. If both fail, it returns
-  /// the closest surface point.
+  /// Returns a point as deep inside as `out` is outside, or, in thin parts, a quarter as deep. If neither point is
+  /// inside, returns the closest surface point.
   [[nodiscard]] Stop pushed_in(const Stop& out) const {
     const Vec3d foot = solid_.closest_point(out.at, body_);
     for (const double far : {1.0, 0.25}) {

@@ -113,8 +113,8 @@ class BoxHierarchy {
     }
   }
 
-  /// Calls visit(k) for the items, by index in order(), of all nodes for whose boxes may_meet(box) returns true. It
-  /// stops when visit() returns false. The root is always searched.
+  /// Calls visit(k) for the items, by index in order(), of all nodes for whose boxes may_meet(box) returns true. The
+  /// search stops when visit() returns false. The root is always searched.
   template <class MayMeet, class Visit>
   void visit_where(const MayMeet& may_meet, const Visit& visit) const {
     const auto distance_to = [&](std::uint32_t n) { return may_meet(nodes_[n].box) ? 0.0 : 2.0; };

@@ -18,13 +18,13 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double noise = 10;               ///< degrees: footprints at a smaller angle count as one
+constexpr double noise = 10;               ///< degrees: footprints at a smaller angle are treated as one footprint
 constexpr double nearly = 10;              ///< degrees by which an angle may be below the angles of all corners
 constexpr double about = 20;               ///< degrees by which an angle may exceed the largest angle found nearby
 constexpr double same = 1e-3;              ///< degrees: rounding of float32
 constexpr double most_below = 0.8;         ///< largest share of the area below: see docs/theory/medial-axis.md
 constexpr double most_above = 0.2;         ///< largest share of samples above
-constexpr double most_curves_above = 0.6;  ///< the same for curves: true curves wind within a voxel
+constexpr double most_curves_above = 0.6;  ///< largest share for curves, which wind within a voxel even in correct axes
 constexpr double most_low_rims = 0.25;     ///< largest share of the length of rims and curves
 constexpr std::size_t few = 64;            ///< shares of fewer cells or samples are not checked
 constexpr std::size_t most_samples = 1'024;
@@ -190,9 +190,9 @@ class Angles {
   double reach_;
 };
 
-/// @param by_voxels  true if the solid consists of voxels, or if voxels define the inside of a mesh. Then many faces
-///                   are equally close, and a mesh may have walls that bound nothing. So shares that depend on
-///                   positions are reported but cause no mismatches.
+/// @param by_voxels  true if the solid consists of voxels, or if voxels define the inside of a mesh. In such solids,
+///                   many faces are equally close, and a mesh may have walls that bound nothing. So shares that depend
+///                   on positions are reported but cause no mismatches.
 void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<std::string>& mismatches) {
   if (!by_voxels && check.triangles >= few && check.below_share > most_below) {
     mismatches.push_back("of the triangles whose corners have two footprints, " + percent(check.below_share) +

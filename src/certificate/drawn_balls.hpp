@@ -26,9 +26,9 @@ struct TouchingBall {
   bool is_whole = false;  ///< true if the surface does not reach into the ball
 };
 
-/// A sequence of balls that touch the surface at the same point, with centres on the same line. It starts with a large
-/// ball, and ends with a ball into which the surface does not reach. Each ball touches a second point, which reaches
-/// into the previous ball.
+/// A sequence of balls that touch the surface at the same point, with centres on the same line. The sequence starts
+/// with a large ball, and ends with a ball into which the surface does not reach. Each ball touches a second point of
+/// the surface, which lies in the previous ball.
 ///
 /// Method: shrinking balls, from outside inwards, with exact closest points. Source: Ma, Bae, Choi, "3D medial axis
 /// point approximation using nearest neighbors and the normal field", The Visual Computer 28(1), 2012.
@@ -39,7 +39,7 @@ class ShrinkingBall {
   ShrinkingBall(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first, double more);
 
   /// Computes the next ball. Returns false and changes nothing if there is none, or if the separation angle of its two
-  /// points is below `floor` degrees. In the latter case, a call with a lower floor may succeed.
+  /// points is below `floor` degrees. If only the floor prevents a ball, a call with a lower floor may succeed.
   [[nodiscard]] bool shrink(const SolidOracle& solid, double floor, TouchingBall& ball);
 
  private:
@@ -52,19 +52,20 @@ class ShrinkingBall {
 };
 
 /// Grows the ball that touches the wall next to p until it touches another wall. It touches the first wall at the
-/// surface point closest to p, and its centre lies on the line from this point through p. A second touching point at a
-/// separation angle below `floor` counts as the same wall, for example behind a shallow edge between facets.
+/// surface point closest to p, and its centre lies on the line from this point through p. A second touching point whose
+/// separation angle is below `floor` is treated as a point of the same wall, for example beyond a shallow edge.
 /// @param p       lies in the body, and not on its surface.
 /// @param first   the surface point closest to p.
 /// @param floor   degrees, above 0.
 /// @param more    by how much the first ball's radius exceeds the distance of p from the surface; 0: the radius is
-///                twice that distance. A small first ball may find only the same wall where a larger one finds another.
+///                twice that distance. A small first ball may find only the same wall where a larger first ball finds
+///                another wall.
 /// @return        a ball of radius 0 if nothing is touched at that angle, or if p lies on the surface.
 [[nodiscard]] TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
                                       double floor, double more = 0);
 
 /// Calls grown_ball() with a first ball that exceeds the distance of p from the surface by `near`. In most cases
-/// another wall is that close. If none is found, the first ball has twice the radius.
+/// another wall is that close. If no other wall is found, a first ball of twice the radius is tried.
 [[nodiscard]] TouchingBall grown_ball_from_near(const SolidOracle& solid, std::uint32_t body, const Vec3d& p,
                                                 const Vec3d& first, double floor, double near);
 
@@ -92,7 +93,8 @@ class BallDraws {
   /// @param reach_in  returns how far the surface may reach into a ball of the given radius.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, const Counts& counts, const ReachIn& reach_in) const;
-  /// Does the same, but skips points that are further from the surface than `most_depth`. This costs less.
+  /// Returns the ball from the k-th point as the function above does, but skips points that are further from the
+  /// surface than `most_depth`. This costs less.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, double most_depth, const Counts& counts,
                                    const ReachIn& reach_in) const;
@@ -140,8 +142,8 @@ class DrawnBalls {
   [[nodiscard]] std::uint32_t every() const { return every_; }
   /// Returns balls from random points just inside the surface of a body, or in its box if the surface has no triangles.
   [[nodiscard]] const BallDraws& in_body(std::uint32_t body) const { return in_bodies_[body / every_]; }
-  /// Returns balls from points behind vertices of the surface of a body. They reach the ends of rods, and the borders
-  /// of plates, however small these are. None if the surface has no triangles.
+  /// Returns balls from points behind vertices of the surface of a body. These balls reach the ends of rods, and the
+  /// borders of plates, however small these are. There are no such balls if the surface has no triangles.
   [[nodiscard]] const BallDraws& at_corners(std::uint32_t body) const { return at_corners_[body / every_]; }
 
  private:

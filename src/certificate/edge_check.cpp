@@ -74,8 +74,8 @@ class EdgeLook {
  private:
   static constexpr double grazes = 1e-4;  ///< fraction of the tolerance that is more than rounding
 
-  /// Searches for gaps of the solid. A way that leaves the solid by at most the tolerance may still cross a gap that is
-  /// this narrow.
+  /// Searches for gaps of the solid. An edge that leaves the solid by at most the tolerance may still cross a gap of
+  /// this width.
   void look_for_gaps(const std::vector<Stop>& way, Findings& found) const {
     constexpr double beside = 2;  // the middle of a gap is half its width from both walls
     for (std::size_t k = 0; k + 1 < way.size(); ++k) {

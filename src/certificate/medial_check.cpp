@@ -155,8 +155,8 @@ class ThinBallJudge {
   [[nodiscard]] bool fits(const TouchingBall& ball, std::uint32_t body) const {
     return ball.is_whole || ball.radius - solid_.distance(ball.centre, body) <= reach_in_ * ball.radius;
   }
-  /// Returns true if no ball beside a ball is much larger. Beside means at right angles to the line between its walls.
-  /// Sheets end in wedges and strips, where larger balls are on one side.
+  /// Returns true if no ball beside a given ball is much larger. Here, beside means at right angles to the line between
+  /// the ball's walls. Sheets end in wedges and strips, where larger balls are on one side.
   [[nodiscard]] bool is_largest(const TouchingBall& ball, std::uint32_t body) const {
     constexpr int directions = 8;
     constexpr double much_larger = 1.05;
@@ -194,7 +194,7 @@ Offsets offsets_of_thin(const BallDraws& draws, std::uint32_t body, const ThinBa
 
 constexpr double above_theta_of_sheets = 10;  ///< degrees: at angles this far above theta, no large sheet is missing
 constexpr std::size_t few_of_pair = 8;        ///< with fewer balls between two walls, nothing is concluded
-constexpr double spacing_of_pair = 2;         ///< voxels: balls this close to each other count as one
+constexpr double spacing_of_pair = 2;         ///< voxels: balls this close to each other are counted as one ball
 constexpr std::size_t few_apart = 6;          ///< with fewer balls further apart, nothing is concluded
 constexpr double least_held = 0.5;            ///< least share of balls next to a cell of their sheet
 
@@ -363,8 +363,8 @@ Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& al
     const AxisPoint p = point(k);
     const Middle::Found found = middle.find(p);
     note(k, !(found.off <= allowed.middle));
-    // Where a thin part opens into a thick part, only the edges of the opening are close to the axis. So the radii at
-    // the cell's corners count, too.
+    // Where a thin part opens into a thick part, only the edges of the opening are close to the axis. So the check also
+    // uses the radii at the cell's corners.
     const double radius = std::max(found.radius, p.depth);
     offsets.add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size), allowed.middle, p.at);
   };
@@ -423,7 +423,7 @@ class Claimed {
   /// Returns true if a vertex should lie between two walls, judged by the angle of one of its cells and by that cell's
   /// other corners.
   [[nodiscard]] bool is_between_walls(std::size_t vertex) const { return is_between_walls_[vertex]; }
-  /// Returns the largest angle that such a cell of a vertex claims, degrees; 0 if none of its cells is one.
+  /// Returns the largest angle that a judged cell at a vertex claims, degrees; 0 if the vertex has no judged cell.
   [[nodiscard]] double claim(std::size_t vertex) const { return claim_[vertex]; }
   /// Returns the separation angle of a vertex's footprints in degrees.
   [[nodiscard]] double angle(std::size_t vertex) const { return angles_[vertex]; }
@@ -457,8 +457,8 @@ class Claimed {
   double all_ = 0;
 };
 
-/// Checks the vertices that should lie between two walls but have one footprint. If they are many, it checks a sample
-/// of them.
+/// Checks the vertices that should lie between two walls but have one footprint. If there are many of these vertices,
+/// the function checks a sample.
 void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Middle& middle, const Allowances& allowed,
                       const std::vector<std::uint32_t>& body_of, MedialCheck& check, const Context& context) {
   std::vector<std::uint32_t> single;
@@ -752,7 +752,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          std::max(axis.radius[a], axis.radius[b])};
       },
       [](std::size_t, bool) {}, context);
-  // A curve counts as a strip of sheet one voxel wide.
+  // A curve is weighted as a strip of sheet one voxel wide.
   const double size_of_curves = claimed.curves().total() * allowed.voxel;
   const double size = claimed.sheets().total() + size_of_curves;
   note_share(check, sheets, curves, size > 0 ? claimed.sheets().total() / size : 1);

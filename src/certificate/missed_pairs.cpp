@@ -12,8 +12,8 @@ namespace {
 
 using Walls = std::array<std::uint32_t, 2>;
 
-/// Returns true if a ball of the axis touches the walls of a ball of the solid, or others of the same smooth parts. A
-/// round part has many walls, and cells of the axis lie between several of them.
+/// Returns true if a ball of the axis touches the walls of a ball of the solid, or other walls of the same smooth
+/// parts. A round part has many walls, and cells of the axis lie between several of them.
 bool touch_same_walls(const SolidOracle& solid, const SeenBall& seen, const TouchingBall& own) {
   const std::array<Walls, 2> walls{solid.walls_at(own.first, seen.body), solid.walls_at(own.second, seen.body)};
   const std::array<std::uint32_t, 2> sought{solid.walls_at(seen.ball.first, seen.body)[0],

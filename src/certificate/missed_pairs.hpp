@@ -33,14 +33,14 @@ struct PairOfWalls {
   std::size_t apart = 0;     ///< number of balls whose centres are pairwise more than a given distance apart
   std::size_t examined = 0;  ///< balls for which cells of the axis were sought
   std::size_t held = 0;      ///< balls among `examined` that are next to a cell between the same walls
-  TouchingBall missed;       ///< the largest ball that is not
+  TouchingBall missed;       ///< the largest of these balls that is not next to such a cell
 };
 
 /// Finds the pairs of walls with many balls, and examines whether the axis has cells between them. Only balls with
 /// radii above Allowances::missing count: on a coarse grid, thin parts may lack single sheets.
 /// @param cells    cells of the axis, and a search tree over them.
 /// @param few      pairs with at most this number of balls are left out.
-/// @param spacing  balls with closer centres count as one in PairOfWalls::apart.
+/// @param spacing  balls with closer centres are counted as one in PairOfWalls::apart.
 /// @throws Cancelled.
 [[nodiscard]] std::vector<PairOfWalls> pairs_of_walls(const KnownSolid& solid, const std::vector<SeenBall>& seen,
                                                       const TriangleMesh& cells, const TriangleSearch& search,

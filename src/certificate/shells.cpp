@@ -164,7 +164,7 @@ std::vector<std::vector<std::uint32_t>> members(const ClosedShells& shells) {
   return lists;
 }
 
-/// A shell, and its direction: 1 if it faces outwards, -1 if inwards, 0 if rounding leaves doubt.
+/// A shell, and its direction: 1 if it faces outwards, -1 if it faces inwards, 0 if rounding leaves this open.
 struct Measured {
   ClosedShell shell;
   std::int8_t faces_outwards = 0;
@@ -266,8 +266,8 @@ class Prober {
   std::vector<Crossing> crossings_;
 };
 
-/// Returns true if `outer` contains `inner`. Both contain a common point and do not cross, so the larger one contains
-/// the other.
+/// Returns true if `outer` contains `inner`. The two shells contain a common point and do not cross. So the larger
+/// shell contains the smaller one.
 bool encloses(const ClosedShell& outer, const ClosedShell& inner) {
   if (std::abs(outer.volume - inner.volume) <= 1e-12 * inner.volume) {
     throw NoPolyhedron(

@@ -17,8 +17,8 @@ namespace blum::verifier {
 struct ClosedShell {
   std::int64_t genus = 0;
   double volume = 0;        ///< enclosed volume, > 0 for either orientation
-  std::uint32_t depth = 0;  ///< number of shells around it: at even depth it bounds a body, at odd depth a void
-  std::uint32_t body = 0;   ///< index of the body; a void has that of the body around it
+  std::uint32_t depth = 0;  ///< number of shells around the shell: at even depth it bounds a body, at odd depth a void
+  std::uint32_t body = 0;   ///< index of the body; a void has the index of the body around it
 };
 
 struct ClosedShells {

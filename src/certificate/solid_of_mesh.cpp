@@ -23,9 +23,9 @@
 namespace blum::verifier {
 namespace {
 
-/// Decides if a way along the surface joins the points where a segment leaves a body and enters it again. If the
-/// segment only cuts an edge of the solid, however closely, such a way exists. If it crosses a gap, however narrow,
-/// there is none.
+/// Decides if a path along the surface joins the points where a segment leaves a body and enters it again. If the
+/// segment only cuts an edge of the solid, however closely, such a path exists. If the segment crosses a gap, however
+/// narrow, no such path exists.
 class GapSearch {
  public:
   /// All arguments must outlive this object.
@@ -35,8 +35,8 @@ class GapSearch {
             std::span<const std::uint32_t> body_of, std::span<const std::uint32_t> beside)
       : solid_(solid), search_(search), mesh_(mesh), body_of_(body_of), beside_(beside) {}
 
-  /// Returns true if, for a part of the segment outside the body, no way along the surface within `reach` joins its
-  /// ends. Returns nullopt if that is undecided.
+  /// Returns true if, for a part of the segment outside the body, no path along the surface within `reach` joins its
+  /// ends. Returns nullopt if this is undecided.
   [[nodiscard]] std::optional<bool> crosses(const Vec3d& a, const Vec3d& b, std::uint32_t body, double reach) const;
 
  private:
@@ -366,7 +366,7 @@ class ShellOracle : public SolidOracle {
   }
 
   /// Returns true if the triangles within a distance of a point are joined to the given one by edges among them. At a
-  /// narrow gap they are not.
+  /// narrow gap, the triangles are not joined.
   [[nodiscard]] bool has_one_wall(const Vec3d& p, std::uint32_t triangle, double within, std::uint32_t body) const {
     std::vector<std::uint32_t> near;
     search_.find_within(p, 2 * within, body, near);
@@ -389,9 +389,10 @@ class ShellOracle : public SolidOracle {
     return std::find(first, first + 3, other) != first + 3;
   }
 
-  /// Returns points deep in a void. The first is the deepest of the middles of some chords. Others lie on opposite
-  /// sides of it, halfway to the wall, and at middles of other chords that are at least half as deep. Flat triangles of
-  /// an axis in a curved wall may stick out of the wall. So a point near the wall may be on either side of them.
+  /// Returns points deep in a void. The first is the deepest of the middles of some chords. Further points lie on
+  /// opposite sides of the first point, halfway to the wall. The middles of other chords are added if they are at least
+  /// half as deep. Flat triangles of an axis in a curved wall may stick out of the wall. So a point near the wall may
+  /// be on either side of them.
   [[nodiscard]] std::vector<Vec3d> points_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t pairs = 4;
     constexpr std::size_t most_middles = 16;
@@ -431,8 +432,9 @@ class ShellOracle : public SolidOracle {
       }
     }
   }
-  /// Returns the mean direction of the triangles around a vertex, into the body. Each triangle counts by its angle at
-  /// the vertex, so that the cut into triangles does not matter. The result is not a unit vector, and may be zero.
+  /// Returns the mean direction of the triangles around a vertex, into the body. The weight of a triangle is its angle
+  /// at the vertex, so that the division into triangles does not matter. The result is not a unit vector, and may be
+  /// zero.
   [[nodiscard]] Vec3d inwards_at(Corner corner) const {
     constexpr int most_triangles = 1024;
     const std::uint32_t v = vertex_of(corner);

@@ -173,7 +173,7 @@ class VoxelOracle : public SolidOracle {
 };
 
 /// Voxels that represent the inside of a mesh. Distances are to the mesh. A point up to a voxel's diagonal outside the
-/// voxels counts as inside.
+/// voxels is treated as inside.
 class WindingOracle : public VoxelOracle {
  public:
   WindingOracle(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const MeshView& surface,

@@ -23,7 +23,7 @@ namespace blum::verifier {
 
 class StatedSites;
 
-/// The number of no wall.
+/// Number that stands for the absence of a wall.
 inline constexpr std::uint32_t no_wall = 0xffffffffU;
 
 /// A value that is computed when it is first needed, and then kept. If several threads need it at once, one computes it
@@ -31,7 +31,7 @@ inline constexpr std::uint32_t no_wall = 0xffffffffU;
 template <class T>
 class Lazy {
  public:
-  /// @param make  computes the value, the same for every caller. It must not request the same value.
+  /// @param make  computes the value, the same for every caller. The callable must not request the same value.
   template <class Make>
   const T& get(const Make& make) const {
     const std::scoped_lock lock(mutex_);
@@ -78,8 +78,8 @@ class SolidOracle {
   [[nodiscard]] virtual Location locate(const Vec3d& p) const = 0;
   /// Returns the exact distance of a point from the surface of a body.
   [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
-  /// Returns the exact distance if it is at least `enough`. Otherwise returns a value below `enough`, which may be
-  /// larger than the distance. This costs less.
+  /// Returns the exact distance if it is at least `enough`. If the distance is smaller, returns a value below `enough`,
+  /// which may be larger than the distance. This costs less.
   [[nodiscard]] virtual double distance_above(const Vec3d& p, double /*enough*/, std::uint32_t body) const {
     return distance(p, body);
   }
@@ -93,29 +93,29 @@ class SolidOracle {
                                             double /*other_depth*/, double /*near*/) const {
     return depth(p, body);
   }
-  /// Returns true if the segment between two points is known to lie in a body, boundary included. Returns false, too,
-  /// if this solid cannot decide.
+  /// Returns true if the segment between two points is known to lie in a body, boundary included. Also returns false if
+  /// this solid cannot decide.
   [[nodiscard]] virtual bool holds(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Returns true if the segment between two points is known not to meet the boundary of a body. Returns false, too, if
-  /// rounding leaves doubt, or this solid cannot decide.
+  /// Returns true if the segment between two points is known not to meet the boundary of a body. Also returns false if
+  /// rounding leaves this open, or this solid cannot decide.
   [[nodiscard]] virtual bool is_clear(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Does the same for a triangle, sides included.
+  /// Returns true if a triangle, sides included, is known not to meet the boundary of a body.
   [[nodiscard]] virtual bool is_clear(const std::array<Vec3d, 3>& /*triangle*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Returns true if a part of a segment outside a body crosses a gap. Then no way along the surface, within `reach` of
-  /// that part, joins its ends. Returns nullopt if that is undecided.
+  /// Returns true if a part of a segment outside a body crosses a gap. In this case, no path along the surface, within
+  /// `reach` of the part, joins the ends of the part. Returns nullopt if that is undecided.
   [[nodiscard]] virtual std::optional<bool> crosses_gap(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/,
                                                         double /*reach*/) const {
     return false;
   }
   /// Returns the closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
-  /// Does the same, possibly faster, if a point of the surface is known to be within the distance `within`.
+  /// Returns the closest point, possibly faster, if a point of the surface is known to be within the distance `within`.
   [[nodiscard]] virtual Vec3d closest_point_within(const Vec3d& p, double /*within*/, std::uint32_t body) const {
     return closest_point(p, body);
   }
@@ -137,12 +137,12 @@ class SolidOracle {
   [[nodiscard]] virtual bool has_triangles() const { return false; }
   /// Returns the diagonal of a voxel if the solid consists of voxels, otherwise 0.
   [[nodiscard]] virtual double grain() const { return 0; }
-  /// Returns how far outside the voxels a point still counts as inside: 0, unless only voxels define the inside of a
-  /// mesh.
+  /// Returns how far outside the voxels a point is still treated as inside: 0, unless only voxels define the inside of
+  /// a mesh.
   [[nodiscard]] virtual double slack() const { return 0; }
   /// Returns the smallest and the largest number of the walls (SurfaceWalls) of a body that contain a point of its
-  /// surface. They differ at an edge between walls. Returns no_wall twice if the surface is not that of the bodies, or
-  /// has no triangles.
+  /// surface. The two numbers differ at an edge between walls. Returns no_wall twice if the surface is not that of the
+  /// bodies, or has no triangles.
   [[nodiscard]] virtual std::array<std::uint32_t, 2> walls_at(const Vec3d& /*point*/, std::uint32_t /*body*/) const {
     return {no_wall, no_wall};
   }

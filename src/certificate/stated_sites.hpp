@@ -20,9 +20,9 @@ namespace blum::verifier {
 /// smallest triangles. Triangles in one plane that share edges form a face. Reflex edges follow, in the order of the
 /// SiteTable, then reflex vertices.
 ///
-/// Diagrams of rounded meshes join faces, and count them by the smallest number. So a number of a face stands for the
-/// whole flat part of the surface around it (SurfaceWalls). A number of a reflex edge also stands for the sites that
-/// contain one of its ends. The numbers of reflex vertices stand for any site.
+/// Diagrams of rounded meshes join faces, and use the smallest number for all of them. So a number of a face stands for
+/// the whole flat part of the surface around it (SurfaceWalls). A number of a reflex edge also stands for the sites
+/// that contain one of its ends. The numbers of reflex vertices stand for any site.
 class StatedSites {
  public:
   /// The arguments must outlive this object.

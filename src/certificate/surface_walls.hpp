@@ -12,10 +12,10 @@ namespace blum::verifier {
 
 /// The walls of a solid: parts of its surface between which sheets lie.
 ///
-/// Triangles that are connected through edges that bend by at most 1 degree form a flat part. Those connected through
-/// edges that bend by at most 30 degrees form a smooth part. The wall of a triangle is its flat part if that covers at
-/// least 1/256 of the surface of its body, else its smooth part. With fillets, the whole surface may be one smooth
-/// part.
+/// Triangles that are connected through edges that bend by at most 1 degree form a flat part. Triangles that are
+/// connected through edges that bend by at most 30 degrees form a smooth part. The wall of a triangle is its flat part
+/// if that covers at least 1/256 of the surface of the body, else its smooth part. With fillets, the whole surface may
+/// be one smooth part.
 class SurfaceWalls {
  public:
   SurfaceWalls() = default;

@@ -37,8 +37,8 @@ struct Findings {
 };
 
 /// Returns true if the balls around the corners, with the corners' depths as radii, cover a piece up to `allowed`. The
-/// balls of both ends of each side must meet, and all three must contain the centre. Balls are convex, so they then
-/// contain the six parts of the piece that have the centre as a corner.
+/// balls of both ends of each side must meet, and all three balls must contain the centre. Balls are convex, so they
+/// then contain the six parts of the piece that have the centre as a corner.
 bool covers(const Piece& piece, double allowed) {
   const Vec3d centre = (piece[0].at + piece[1].at + piece[2].at) / 3.0;
   for (std::size_t k = 0; k < 3; ++k) {

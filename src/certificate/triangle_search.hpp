@@ -76,7 +76,7 @@ class TriangleSearch {
   /// Returns the closest triangle of a group, or of all triangles for no_group. Exact up to rounding. The distance is
   /// HUGE_VAL if there are no triangles.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::uint32_t group = no_group) const;
-  /// Does the same, faster, if a triangle of the group is known to be within the distance `within`.
+  /// Returns the closest triangle faster, if a triangle of the group is known to be within the distance `within`.
   [[nodiscard]] Nearest nearest_within(const Vec3d& p, double within, std::uint32_t group) const;
 
   /// Finds the triangles of a group within a distance of a point.
@@ -98,8 +98,8 @@ class TriangleSearch {
   [[nodiscard]] bool exact_crossings(const Vec3d& from, const Vec3d& to, std::uint32_t group,
                                      std::vector<Crossing>& found) const;
 
-  /// Returns true if no side of a triangle of the group pierces the given triangle. Returns false, too, if rounding
-  /// leaves doubt.
+  /// Returns true if no side of a triangle of the group pierces the given triangle. Also returns false if rounding
+  /// leaves this open.
   [[nodiscard]] bool is_unpierced(const std::array<Vec3d, 3>& triangle, std::uint32_t group) const;
 
   [[nodiscard]] const Box3& bounds() const { return bounds_; }

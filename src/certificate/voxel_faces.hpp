@@ -47,7 +47,7 @@ class VoxelFaces {
   void for_each_face(std::size_t brick, const Use& use) const;
 
   /// Checks that a segment lies in the voxels of the set, boundaries included, and returns one of the voxels that it
-  /// meets. Returns nullopt if the segment leaves the set, or if rounding leaves doubt.
+  /// meets. Returns nullopt if the segment leaves the set, or if rounding leaves this open.
   [[nodiscard]] std::optional<Voxel> held(const Vec3d& from, const Vec3d& to) const;
 
   /// Returns the rectangle of a face, along the axes of the grid and relative to its first node.

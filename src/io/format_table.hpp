@@ -63,7 +63,7 @@ struct Sniffer {
   /// Returns true if the first bytes of a file show that it has this format. Null if bytes cannot identify the format.
   bool (*begins)(std::string_view head) = nullptr;
   /// Returns true if a file with this format's extension and these first bytes has this kind of content. Null if every
-  /// such file has.
+  /// file of the format has this kind of content.
   bool (*holds_this)(std::string_view head, const fs::path& path) = nullptr;
 };
 

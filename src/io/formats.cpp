@@ -62,7 +62,7 @@ std::size_t find_named(FileContent content, std::string_view name) {
                       std::string(to_string(content)) + "'; the formats are " + known);
 }
 
-/// Returns the way round for a pipe without an extension; an empty text for other files.
+/// Returns advice for a pipe without an extension; an empty text for other files.
 std::string advice_for_pipe(const std::filesystem::path& path) {
   if (path != "-" && !is_pipe(path)) return "";
   return "; for standard input, give a link to /dev/stdin whose name has such an extension (`ln -s /dev/stdin NAME`)";
@@ -206,7 +206,7 @@ bool holds(const std::optional<Format>& format, const fs::path& path, std::strin
 }  // namespace
 
 std::optional<MeshFormat> mesh_format_by_content(const fs::path& path, std::string_view head) {
-  // The number of triangles in a binary STL file gives its size. It has no other mark.
+  // The number of triangles in a binary STL file gives its size. A binary STL file has no other mark.
   if (volume_io::is_binary_stl(head, count_file_bytes(path))) return MeshFormat("STL");
   return MeshFormat::by_head(head);
 }

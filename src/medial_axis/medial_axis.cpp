@@ -70,7 +70,7 @@ constexpr std::size_t cells_between_looks = 65536;
 struct HashOfPlace {
   std::size_t operator()(const Vec3d& p) const {
     std::size_t hash = 0;
-    // Adding 0.0 turns -0 into 0. Both are equal, so they must have the same hash.
+    // Adding 0.0 turns -0 into 0. The numbers 0 and -0 are equal, so they must have the same hash.
     for (const double x : {p.x, p.y, p.z}) hash = (hash ^ std::hash<double>()(x + 0.0)) * 0x9e3779b97f4a7c15U;
     return hash ^ hash >> 32U;
   }
@@ -530,7 +530,7 @@ class MedialAxisBuilder {
   }
 
   /// Adds the phases of all bodies to the report. If bodies are computed in parallel, the sum of their times exceeds
-  /// the elapsed time `seconds`. All times are then scaled so that their sum is `seconds`.
+  /// the elapsed time `seconds`. In this case, all times are scaled so that their sum is `seconds`.
   void add_phases(const std::vector<BodyPart>& parts, double seconds) {
     double all = 0;
     for (const BodyPart& part : parts) {

@@ -51,15 +51,15 @@ class Chart {
   [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
     return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
   }
-  /// Returns the point of the triangle for a place in the texture. If the place is outside the chart, it is the point
-  /// of the triangle closest to in_plane().
+  /// Returns the point of the triangle for a place in the texture. If the place is outside the chart, the result is the
+  /// point of the triangle that is closest to in_plane().
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
     std::array<bool, 3> is_beyond{};
     for (std::size_t k = 0; k < 3; ++k) is_beyond[k] = beyond(k, at);
     if (!is_beyond[0] && !is_beyond[1] && !is_beyond[2]) return point;
-    // The closest point lies on a side that the place is beyond. For slivers, rounding may find no such side or a wrong
-    // one, so all sides are tested.
+    // The closest point lies on a side of the triangle that separates it from the place. For slivers, rounding may find
+    // no such side or a wrong one, so all sides are tested.
     Vec3d best;
     double closest = HUGE_VAL;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -128,9 +128,9 @@ struct ScaledCharts {
 }
 
 /// Calls visit(x, y, outside) for the texels that nearest or bilinear reading at a place of a chart uses. The middle of
-/// such a texel is less than one texel, along x and along y, away from a place of the chart. `outside` is the largest
-/// signed distance of the texel's middle beyond a side of the chart, in texels. It is 0 or less if the middle is in the
-/// chart.
+/// each of these texels is less than one texel, along x and along y, away from a point of the chart. `outside` is the
+/// largest signed distance of the texel's middle beyond a side of the chart, in texels. It is 0 or less if the middle
+/// is in the chart.
 /// @param places  corners of the chart; has_area() must be true for them.
 /// @param width, height  size of the texture; texels outside it are not visited.
 template <class Visit>

@@ -67,8 +67,8 @@ class Cutter {
   double squared_size_;
 };
 
-/// Returns the size of pieces that yields about the wanted number of them. Halving of right-angled isosceles triangles
-/// yields pieces with areas of 1/8 to 1/4 of the squared size.
+/// Returns the size of pieces that yields about the wanted number of pieces. Halving of right-angled isosceles
+/// triangles yields pieces with areas of 1/8 to 1/4 of the squared size.
 double size_for(const MeshView& mesh, double count) {
   double area = 0;
   double longest_sides = 0;

@@ -24,7 +24,7 @@ constexpr std::size_t most_upper = 3;
 constexpr std::size_t most_for_sites = 16;
 /// Rounding errors of positions and of squares of distances, where the largest coordinate is about 1.
 constexpr double rounding = 1e-14;
-/// If the bounds of a piece with one closest site differ by at most this, its values count as linear.
+/// If the bounds of a piece with one closest site differ by at most this, its values are treated as linear.
 constexpr double straight = 1e-9;
 /// Factor that makes up for rounding where a limit of a search was computed.
 constexpr double slack = 1 + 1e-9;
@@ -91,8 +91,8 @@ double DeviationPiece::mean_error() const {
   return is_sharp ? sum(error) / 3 : std::sqrt(mean_square_error());
 }
 
-/// If the piece is not sharp, the errors are distances from the centroid. Their mean square is a twelfth of the sum of
-/// those of the corners.
+/// If the piece is not sharp, the errors are distances from the centroid. The mean square of the errors is a twelfth of
+/// the sum of the squares at the corners.
 double DeviationPiece::mean_square_error() const {
   if (is_sharp) return mean_square_of(error);
   return (error[0] * error[0] + error[1] * error[1] + error[2] * error[2]) / 12;
@@ -193,8 +193,8 @@ void DeviationBounds::collect(Search& search) const {
   });
 }
 
-/// The distance from a primitive is a convex function. So the linear function with its values at the corners is not
-/// below it.
+/// The distance from a primitive is a convex function. So the linear function with the same values at the corners is
+/// not below this distance.
 DeviationBounds::Linear DeviationBounds::upper_bound(const DeviationPiece& piece, const Search& search) const {
   Linear best;
   double least = std::numeric_limits<double>::infinity();
@@ -221,7 +221,7 @@ std::uint32_t DeviationBounds::partner_of(std::uint32_t primitive) const {
 }
 
 /// Returns true if the partner of a primitive is closer to the centroid. The plane before the partner is then before
-/// both.
+/// the primitive and the partner.
 bool DeviationBounds::is_behind_partner(const Search& search, const NearestPrimitive& one) const {
   const std::uint32_t partner = partner_of(one.primitive);
   if (partner == one.primitive) return false;
@@ -241,8 +241,9 @@ double DeviationBounds::front_of(std::uint32_t primitive, const Vec3d& direction
 }
 
 /// Each primitive, together with its partner, lies behind a plane. So the distance from the plane is a lower bound on
-/// the distance from the primitive. The least of linear functions is concave, so the linear function with its values at
-/// the corners is not above it. The same holds for the distance of the centroid minus the distance from the centroid.
+/// the distance from the primitive. The least of linear functions is concave, so the linear function with the same
+/// values at the corners is not above it. The distance of the centroid minus the distance from the centroid is also
+/// concave.
 DeviationBounds::Linear DeviationBounds::lower_bound(const DeviationPiece& piece, const Search& search,
                                                      const Linear& upper) const {
   Linear best;  // 0
@@ -310,7 +311,7 @@ void DeviationBounds::set_sign(DeviationPiece& piece, const Vec3d& centroid, con
 }
 
 /// Returns true if the sign of the centroid holds wherever the lower bound is above 0. These points are connected. The
-/// distances of the others are at most the gap between the bounds, which is added to the errors.
+/// distances of all other points are at most the gap between the bounds, which is added to the errors.
 bool DeviationBounds::is_one_sided(DeviationPiece& piece, const Linear& lower, const Linear& upper) {
   double gap = 0;
   for (std::size_t k = 0; k < 3; ++k) gap = std::max(gap, upper.at[k] - lower.at[k]);
@@ -399,7 +400,8 @@ RoundValues DeviationBounds::round_values(const DeviationPiece& piece) const {
 }
 
 /// Computes the bounds of a piece whose closest site is known. The distance is the length of an affine function, which
-/// is convex. So its values at the corners and its tangent at the centroid enclose it. If they differ, it is round.
+/// is convex. So the distance lies between the linear function with its values at the corners and its tangent at the
+/// centroid. If these differ, the piece is round.
 void DeviationBounds::set_by_site(DeviationPiece& piece) const {
   const Vec3d centroid = centroid_of(piece.corners);
   std::array<Vec3d, 3> offsets;

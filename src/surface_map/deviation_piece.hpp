@@ -20,8 +20,8 @@
 namespace blum::surface {
 
 /// A part of a triangle of a surface. The deviation of each of its points x is at most error(x) from value(x). The
-/// error changes linearly between the corners. So does the value, unless `is_round`: then it is the distance from the
-/// site.
+/// error changes linearly between the corners. The value also changes linearly, unless `is_round` is true: then the
+/// value is the distance from the site.
 struct DeviationPiece {
   std::array<Vec3d, 3> corners{};
   std::array<double, 3> value{};
@@ -110,8 +110,8 @@ class DeviationBounds {
   std::vector<std::uint32_t> partner_;
 };
 
-/// Sets the bounds of a new piece, which follow from the deviation of its centroid alone. Its errors are the distances
-/// of the corners from the centroid.
+/// Sets the bounds of a new piece, which follow from the deviation of its centroid alone. The errors of the bounds are
+/// the distances of the corners from the centroid.
 void set_around(DeviationPiece& piece, double deviation);
 
 /// Returns the mean square of a linear function over a triangle.

@@ -66,9 +66,10 @@ bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
-/// Returns the bound that a cut yields. The closest point of the corner lies on a primitive (its own) other than the
-/// middle one. The cut joins the points of the two sides at the corner that are closest to the common part of both
-/// primitives. The corner's piece is then bounded by its own primitive, and the rest by the middle one.
+/// Returns the bound that a cut yields. The closest point of the corner lies on its own primitive, which is not the
+/// middle primitive. The cut joins the points of the two sides at the corner that are closest to the common part of
+/// both primitives. The corner's own primitive then bounds the corner's piece, and the middle primitive bounds the
+/// rest.
 double bound_by_cut(const Corners& corners, std::size_t corner, const std::array<Vec3d, 2>& common) {
   double squared = 0;
   for (const std::size_t other : {(corner + 1) % 3, (corner + 2) % 3}) {
@@ -80,8 +81,8 @@ double bound_by_cut(const Corners& corners, std::size_t corner, const std::array
 
 /// Returns the bound that cuts of the triangle into pieces yield. Each piece is bounded by its distance from one
 /// primitive, which is largest at a corner of the piece. The middle primitive bounds the middle piece. If the closest
-/// point of a corner is not on the middle primitive, a piece is cut off there. A primitive with that closest point
-/// bounds it, and must touch the middle one.
+/// point of a corner is not on the middle primitive, a piece is cut off there. A primitive that contains this closest
+/// point bounds the piece. This primitive must touch the middle primitive.
 double bound_around(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                     std::uint32_t middle, double enough) {
   double bound = 0;
@@ -113,8 +114,8 @@ double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const
   return best;
 }
 
-/// Returns the bound with the primitive closest to the centroid as the middle one. The closest points of all corners
-/// may lie on its neighbours.
+/// Returns the bound with the primitive closest to the centroid as the middle primitive. The closest points of all
+/// corners may lie on neighbours of this primitive.
 double bound_by_centroid(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                          double largest, double enough) {
   const Vec3d centroid = (corners[0]->point + corners[1]->point + corners[2]->point) / 3.0;

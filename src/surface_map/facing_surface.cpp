@@ -6,7 +6,7 @@
 namespace blum::surface {
 namespace {
 
-/// Calls visit(site) for the vertices and edges of a primitive. It may visit a site more than once.
+/// Calls visit(site) for the vertices and edges of a primitive. A site may be visited more than once.
 template <class Visit>
 void for_each_border_site(const MeshView& mesh, const SiteTable& sites, std::uint32_t primitive, Visit visit) {
   const Triangle vertices = primitive_vertices(mesh, primitive);

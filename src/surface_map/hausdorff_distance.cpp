@@ -27,7 +27,8 @@ constexpr std::size_t points_per_range = 512;
 constexpr std::size_t pieces_per_range = 64;
 /// Least number of consecutive primitives that are tested and excluded together.
 constexpr std::size_t smallest_run = 8;
-/// Greatest number of pieces divided in one round. It is small enough that results of one round save work in the next.
+/// Greatest number of pieces divided in one round. The number is small enough that results of one round save work in
+/// the next round.
 constexpr std::size_t most_per_round = std::size_t{1} << 16;
 
 /// A part of a primitive: a triangle whose corners are evaluated points.
@@ -99,7 +100,8 @@ class FurthestPoint {
  private:
   [[nodiscard]] double furthest() const { return points_[furthest_].distance; }
 
-  /// Returns the closest point of the other mesh for a point. It must be known that its distance is at most `bound`.
+  /// Returns the closest point of the other mesh for a point. The caller must know that the distance is at most
+  /// `bound`.
   [[nodiscard]] FacingPoint evaluated(const Vec3d& point, double bound) const {
     std::optional<NearestSite> nearest = other_.hierarchy().nearest(point, bound * (1 + 1e-9) + 1e-12);
     if (!nearest) nearest = other_.hierarchy().nearest(point);
@@ -141,7 +143,7 @@ class FurthestPoint {
   }
 
   /// Returns true if at least half of 32 sampled primitives have a first vertex at distance 0 from the other mesh. This
-  /// is so if one mesh was made by changing a part of the other.
+  /// happens if one mesh was made by changing a part of the other mesh.
   bool are_mostly_common(const std::vector<std::uint32_t>& primitives) {
     constexpr std::size_t samples = 32;
     if (primitives.size() < 32 * samples) return false;
@@ -155,7 +157,7 @@ class FurthestPoint {
     return 2 * common >= samples;
   }
 
-  /// Evaluates vertices that have the same position as a vertex of the other mesh. These need no search.
+  /// Evaluates vertices that have the same position as a vertex of the other mesh. These vertices need no search.
   void evaluate_common_vertices() {
     std::vector<Vec3d> both(other_.mesh().vertices.begin(), other_.mesh().vertices.end());
     const std::size_t of_other = both.size();

@@ -33,8 +33,8 @@ class Histogram {
   [[nodiscard]] double total() const { return total_.value(); }
   [[nodiscard]] double range() const { return most_ - least_; }
 
-  /// Returns an interval that contains the value below which a given weight lies. It is up to two bins longer than
-  /// needed, so that rounding does no harm.
+  /// Returns an interval that contains the value below which a given weight lies. The interval is up to two bins longer
+  /// than needed, so that rounding does no harm.
   [[nodiscard]] std::pair<double, double> around(double weight) const {
     double begun = 0;
     double ended = 0;
@@ -120,8 +120,8 @@ class PercentileSearch {
     high_ = std::min(high_, most);
   }
 
-  /// Returns the value that has the wanted weight if the weight changes linearly. It is moved towards the further end,
-  /// so that the next interval is short.
+  /// Returns the value that has the wanted weight if the weight changes linearly. The value is moved towards the
+  /// further end, so that the next interval is short.
   [[nodiscard]] double interpolated(double error) const {
     const double rise = weight_of_high_ - weight_of_low_;
     const double part = rise > 0 ? std::clamp((wanted_ - weight_of_low_) / rise, 0.0, 1.0) : 0.5;

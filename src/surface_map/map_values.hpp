@@ -61,8 +61,8 @@ void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_pe
                  FunctionRef<void(std::size_t begin, std::size_t end)> fill_range, const Context& context);
 
 /// Returns the value at a point of a triangle.
-/// @param last  the value at a point that is probably close to `point`, or null. It may be used to bound the search,
-/// but must not change the result.
+/// @param last  the value at a point that is probably close to `point`, or null. The value may bound the search, but
+/// must not change the result.
 using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle, const SurfaceValue* last)>;
 /// Fills the texels, the summaries of triangles and the distances of vertices of a map with the values of `value_at`.
 void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context);

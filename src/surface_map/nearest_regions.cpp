@@ -14,7 +14,7 @@ using Polygon = InlineList<Vec3d, 16>;
 using Values = InlineList<double, 16>;
 using Offsets = InlineList<Vec3d, 16>;
 
-/// Values of at most this count as 0 where a polygon is divided.
+/// Where a polygon is divided, values of at most this are treated as 0.
 constexpr double small = 1e-14;
 /// A polygon is divided only if the values on both sides reach this.
 constexpr double least_value = 1e-12;
@@ -106,7 +106,7 @@ double smallest(const Values& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-/// Returns the sign of each value. Values that count as 0 have the sign of the one before.
+/// Returns the sign of each value. Values that are treated as 0 have the sign of the previous value.
 InlineList<bool, 16> signs_of(const Values& values) {
   bool is_above = false;
   for (const double value : values) {
@@ -145,7 +145,7 @@ std::array<Polygon, 2> divided(const Polygon& polygon, const Values& values) {
       there.push_back(polygon[k]);
       continue;
     }
-    // The next value does not count as 0, or it would have the same sign.
+    // The next value is not treated as 0, because it would then have the same sign.
     const Vec3d at = polygon[k] + (polygon[next] - polygon[k]) * (values[k] / (values[k] - values[next]));
     here.push_back(at);
     there.push_back(at);
@@ -273,7 +273,8 @@ class NearestAtMean {
 
   /// Returns true if no point of the polygon is closer to a facet than to the site. A lower bound of the
   /// facet's distance is that of its plane, or of a vertex or line that the whole facet is behind. The difference of
-  /// both squares is a quadratic function. It is not above 0 if its polar form is not above 0 for all pairs of corners.
+  /// both squares is a quadratic function. The function is not above 0 if its polar form is not above 0 for any pair of
+  /// corners.
   [[nodiscard]] bool is_further(const Facet& facet, const Flat& flat) const {
     const Offsets others = offsets_from(flat, polygon_);
     for (std::size_t i = 0; i < polygon_.size(); ++i) {
@@ -377,7 +378,7 @@ class NearestAtMean {
     if (smallest(distances) < -short_cut && largest(distances) > short_cut && divides(distances)) values_ = distances;
   }
 
-  /// Returns the place, 0 to 1, at which a quadratic function changes its sign.
+  /// Returns the parameter, 0 to 1, at which a quadratic function changes its sign.
   /// @param square  factor of the square.
   static double zero_of(double at_0, double at_1, double square) {
     if (at_0 > 0) return zero_of(-at_0, -at_1, -square);

@@ -47,7 +47,8 @@ struct NearestRegion {
 /// Divides a triangle where the closest facet changes, or the closest part of a facet.
 /// @param facets     all that may be closest to a point of the triangle. Their largest coordinate must be about 1.
 /// @param most       greatest number of triangles that the parts may be divided into, at least 3.
-/// @param tolerance  a site counts as closest if the square of its distance is at most this above the smallest one.
+/// @param tolerance  a site is treated as closest if the square of its distance exceeds the smallest square by at most
+///                   this.
 /// @param out        receives the parts.
 /// Method: docs/theory/surface-maps.md.
 void divide_by_nearest(const std::array<Vec3d, 3>& triangle, std::span<const Facet> facets, std::size_t most,

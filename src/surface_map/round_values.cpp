@@ -15,7 +15,7 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Largest error of fractions.
 constexpr double most_fraction_error = 1e-7;
-/// Largest width of triangles that count as segments.
+/// Largest width of triangles that are treated as segments.
 constexpr double most_width = 1e-6;
 /// Rounding errors of a sum, as a multiple of epsilon times the magnitudes of its terms.
 constexpr double factor = 32;

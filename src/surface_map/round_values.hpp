@@ -8,7 +8,7 @@
 namespace blum::surface {
 
 /// Mean and distribution of |y| over all points y of a triangle, in closed form. The length of an affine function over
-/// a triangle has them, too, because the function maps the triangle to another one.
+/// a triangle has the same mean and distribution, because the function maps the triangle to another triangle.
 class RoundValues {
  public:
   /// @param corners  images of the corners. Their largest coordinate must be about 1, or less.
@@ -45,7 +45,7 @@ class RoundValues {
   [[nodiscard]] double area_within(const Side& side, double radius) const;
 
   bool is_accurate_ = true;
-  bool is_segment_ = false;  ///< true if the triangle is so narrow that it counts as a segment
+  bool is_segment_ = false;  ///< true if the triangle is so narrow that it is treated as a segment
   double height_ = 0;        ///< distance of the plane, or of the segment's line, from the origin
   double area_ = 0;
   std::array<Side, 3> sides_{};

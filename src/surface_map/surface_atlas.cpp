@@ -21,8 +21,7 @@ constexpr std::uint32_t most_a_side = 16384;
 /// Texels: distance of a chart's border from the outermost middles of its texels. So rounding of texture coordinates
 /// does not select other texels.
 constexpr double inset = 1.0 / 64;
-/// Number of texels by which a rectangle is wider and higher than the legs of its charts are long. Two charts share a
-/// rectangle.
+/// Number of texels by which the sides of a rectangle exceed the legs of its charts. Two charts share a rectangle.
 constexpr std::uint32_t gutter = 3;
 
 /// Returns the width of an additional border around a chart, texels; it is 0 for small charts. Programs that draw a

@@ -102,7 +102,7 @@ class DeviationSearch {
 
  private:
   /// Makes a piece of each triangle with an area. Its bounds follow from the distance of its centroid. If the mesh has
-  /// many triangles, they are cut into all pieces at once: many such bounds take less time than a few narrow ones.
+  /// many triangles, they are cut into all pieces at once: many wide bounds take less time than a few narrow bounds.
   void make_pieces(double area_scale) {
     const bool is_cut = mesh_.triangles.size() > most_ / triangles_for_cut;
     if (is_cut) {
@@ -224,7 +224,7 @@ class DeviationSearch {
     const bool is_mean_wanted = found.mean_error > tolerance || found.rms_error > tolerance;
     const double of_percentiles = (tolerance_ ? 1 : 2) * tolerance;
     Ranges by_area;
-    // For a more precise mean, pieces are divided whatever the percentiles.
+    // If the mean is not precise enough, pieces are divided whatever the percentiles.
     if (!is_mean_wanted) add_percentiles(found, tolerance / 20);
     for (std::size_t k = 0; k < found.lower.size(); ++k) {
       const std::pair bounds{found.lower[k], found.upper[k]};
@@ -261,8 +261,8 @@ class DeviationSearch {
     });
   }
 
-  /// Keeps the pieces with the largest errors, and sets the goal. Results for these pieces may make the division of the
-  /// others needless.
+  /// Keeps the pieces with the largest errors, and sets the goal. Results for these pieces may show that other pieces
+  /// need no division.
   void keep_worst(std::vector<std::uint32_t>& wanted) {
     // Many pieces are divided in few rounds, because each computes all statistics again.
     const std::size_t least = pieces_.size() / (pieces_.size() < many_pieces ? 6 : 3) + 1;

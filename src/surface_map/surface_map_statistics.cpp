@@ -42,8 +42,8 @@ using PartValues = std::vector<surface::SpreadValue>;
 /// A part at the border of a triangle is smaller than its square, and its texel may belong to a neighbouring triangle.
 /// So the value at the centroid of the part is extrapolated from the texel's point, along the gradient of the distance.
 /// The gradient is the unit vector away from the closest point. Its component along the triangle also gives the spread
-/// of the values in the part. Thickness has no such gradient, and may jump between triangles. So parts of thickness
-/// maps use only texels of their own triangle, without extrapolation.
+/// of the values in the part. Thickness has no gradient of this kind, and may jump between triangles. So parts of
+/// thickness maps use only texels of their own triangle, without extrapolation.
 class SurfaceDivider {
  public:
   SurfaceDivider(const MeshView& mesh, const SurfaceMap& map)
@@ -122,7 +122,7 @@ class SurfaceDivider {
     out.push_back({value + (value < 0 ? -change : change), 0.5 * along * std::sqrt(area) / charts_.scale, area});
   }
 
-  /// Returns the way from the point of a part's texel to the centroid of the part, mesh units.
+  /// Returns the vector from the point of a part's texel to the centroid of the part, mesh units.
   [[nodiscard]] Vec3d way_to_centroid(const Part& part, std::uint32_t t, const surface::Chart& chart) const {
     const TexturePlace middle = surface::middle_of(part.texel % atlas_.width, part.texel / atlas_.width);
     const std::uint32_t owner = atlas_.triangle[part.texel].value;

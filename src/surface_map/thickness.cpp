@@ -104,8 +104,8 @@ class ThicknessSearch {
     return std::array{1 - second - third, second, third};
   }
 
-  /// Returns the mean normal of the triangles at a corner of a triangle, weighted by their angles at the corner. Only
-  /// triangles whose normals differ from that of `triangle` by less than the separation count.
+  /// Returns the mean normal of the triangles at a corner of a triangle, weighted by their angles at the corner. The
+  /// mean includes only triangles whose normals differ from that of `triangle` by less than the separation.
   [[nodiscard]] Vec3d corner_normal(std::uint32_t triangle, std::size_t corner) const {
     const std::uint32_t vertex = mesh_.triangles[triangle][corner];
     Vec3d sum;
@@ -155,8 +155,8 @@ class ThicknessSearch {
     return below > 0 ? squared_length(way) / (2 * below) : nothing;
   }
 
-  /// Shrinks a ball until no triangle that counts is inside it. Each step finds the closest point to the ball's centre.
-  /// The next ball touches both that point and the plane at `point`.
+  /// Shrinks a ball until no triangle that limits the ball is inside it. Each step finds the closest point to the
+  /// ball's centre. The next ball touches both that point and the plane at `point`.
   [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own, const Hint& hint) const {
     const auto counts = [&](std::uint32_t triangle) {
       // Triangles without area have no normal to compare.

@@ -7,7 +7,7 @@
 namespace blum::surface {
 namespace {
 
-/// Place at which the weight below a value begins to grow faster or more slowly, or jumps.
+/// Value at which the weight below it begins to grow faster or more slowly, or jumps.
 struct Event {
   double at = 0;
   double slope = 0;  ///< change of the slope

@@ -21,9 +21,9 @@
 namespace blum::voronoi {
 namespace {
 
-/// The footprints of a point. Labels count as equally close if their distances differ by at most 1e-9 of the mesh's
-/// size. Among their closest points, the two at the largest separation angle are the footprints. If only one exists, it
-/// is stored twice.
+/// The footprints of a point. Labels are treated as equally close if their distances differ by at most 1e-9 of the
+/// mesh's size. Among their closest points, the two at the largest separation angle are the footprints. If only one
+/// closest point exists, it is stored twice.
 struct WallPoint {
   double radius = 0;                ///< exact distance from the closest label
   std::array<Vec3d, 2> footprints;  ///< relative to the centre of the labels
@@ -151,8 +151,8 @@ std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const Label
       }
     }
     if (largest <= enough) {
-      // If q is outside the box, the iteration continues from the box's closest point. Such alternation finds a point
-      // that satisfies both conditions if one exists.
+      // If q is outside the box, the iteration continues from the box's closest point. This alternation finds a point
+      // that satisfies both conditions if such a point exists.
       const Vec3d inside = max(box.low, min(box.high, q));
       if (inside == q) return q;
       q = inside;
@@ -343,8 +343,8 @@ class Assembly {
   }
 
   /// Adds the ends of walls on convex edges. The wall between the two faces of such an edge ends where the edge pierces
-  /// the square. It belongs to a component that has an event between both faces. If no component has one, it is in the
-  /// first component that both faces touch.
+  /// the square. The end belongs to a component that has an event between both faces. If no component has an event
+  /// between both faces, the end belongs to the first component that both faces touch.
   void add_rims(const CubeCells::Square& cells, const GridSquare& square, std::uint32_t first) {
     for (const std::uint32_t edge : cells.convex_edges) {
       const auto [t, u] = solid_.sites.triangles_of[edge];
@@ -461,8 +461,8 @@ class Assembly {
   }
 
   /// Returns true if a triangle's corners run counterclockwise as seen from the region of the larger site. The corners
-  /// lie on a grid edge, in a square at that edge, and in a cube at that square. Only the positions of these cells
-  /// decide. So the triangles around a region form a consistently oriented closed surface.
+  /// lie on a grid edge, in a square at that edge, and in a cube at that square. The result depends only on the
+  /// positions of these cells. So the triangles around a region form a consistently oriented closed surface.
   [[nodiscard]] bool faces_larger_site(std::uint32_t event, const GridSquare& square, const GridCube& cube) const {
     const GridEdge& edge = tree_.edges[edge_of_event_[event]];
     const std::size_t across = 3 - edge.axis - square.axis;  // axis from the edge into the square
@@ -477,7 +477,7 @@ class Assembly {
   }
 
   /// Computes the separation angle at the middle of each triangle: between its feet on the planes, lines or points of
-  /// the wall's two sites. It is set to 0 for triangles of the surface, and if it is below `least`, the limit of
+  /// the wall's two sites. The angle is set to 0 for triangles of the surface, and if it is below `least`, the limit of
   /// rounding.
   void find_angles() {
     constexpr double least = 1e-6;  // degrees

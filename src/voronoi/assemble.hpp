@@ -15,7 +15,7 @@ namespace blum::voronoi {
 struct Assembled {
   Complex complex;
   double largest_diagonal = 0;    ///< largest diagonal of a cube with a component, mesh units
-  std::vector<FailingCube> lost;  ///< cubes that passed before but do not pass now; should be empty
+  std::vector<FailingCube> lost;  ///< cubes that passed an earlier test but fail now; should be empty
 };
 
 /// Builds the complex of the components of walls and surface in leaves. It has a vertex for each component in a passing

@@ -45,7 +45,8 @@ std::vector<std::int32_t> patches_of_sites(const SiteTable& table, std::span<con
   const auto check = [](std::size_t index, std::size_t count) {
     if (index >= count) refuse();
   };
-  // Faces come first, then edges, then vertices. Each replaces what the sites before it left at its own place.
+  // Faces come first, then edges, then vertices. Each site overwrites the numbers that earlier sites wrote for its part
+  // of the mesh.
   for (std::size_t s = 0; s < sites.size(); ++s) {
     const auto number = static_cast<std::int32_t>(s);
     for (const std::uint32_t t : sites[s].triangles) {
@@ -90,7 +91,7 @@ class Governors {
     }
   }
 
-  /// Returns both patches, the smaller number first. They are equal if no second contact is found.
+  /// Returns both patches, the smaller number first. The two patches are equal if no second contact is found.
   /// @param angle  least angle between the two contacts, degrees.
   /// @param reach  largest distance of the second contact.
   [[nodiscard]] std::array<std::int32_t, 2> at(const Vec3d& query, double angle, double reach) const {
@@ -122,7 +123,7 @@ class Governors {
   /// Returns the patch of the closest contact that is seen under an angle of at least `angle` from the first one.
   [[nodiscard]] std::int32_t second_patch(const Vec3d& query, double radius, const Contact& first, double angle) const {
     std::vector<NearestPrimitive> near = bvh_.within(query, radius);
-    // Primitives with the same closest point stand next to each other. Their order of distances is kept.
+    // Primitives with the same closest point stand next to each other. The order of distances is kept.
     struct Place {
       double distance;
       SiteId site;

@@ -57,7 +57,7 @@ struct GridEdge {
 enum class SquareState : std::uint8_t { unknown, resolved };
 
 /// An arc in a square where the square meets a wall or the surface, which the requested part of the diagram drops
-/// (PartRule). It need not reach the border of the square.
+/// (PartRule). The arc need not reach the border of the square.
 struct InnerArc {
   std::uint32_t first = 0;   ///< site on one side
   std::uint32_t second = 0;  ///< site on the other side; `outside` for the surface
@@ -108,9 +108,9 @@ struct GridCube {
   [[nodiscard]] Node high() const { return {low[0] + length, low[1] + length, low[2] + length}; }
 };
 
-/// An octree with its events, edges, squares and cubes. The grid's planes count as moved by infinitely small amounts
-/// (simulation of simplicity, grid_predicates.hpp). So no vertex, edge or triangle of the surface lies in a degenerate
-/// position relative to squares and cubes.
+/// An octree with its events, edges, squares and cubes. The grid's planes are treated as moved by infinitely small
+/// amounts (simulation of simplicity, grid_predicates.hpp). So no vertex, edge or triangle of the surface lies in a
+/// degenerate position relative to squares and cubes.
 struct CellTree {
   Lattice lattice;
   std::vector<LineEvent> events;

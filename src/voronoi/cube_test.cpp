@@ -303,7 +303,8 @@ class CubeAnalysis {
     return site >= t_.sites_.face_count && site < t_.sites_.face_count + t_.sites_.reflex_edges.size();
   }
 
-  /// Tests the regions of vertices. Such a region is convex; it passes if it has exactly one part on the boundary.
+  /// Tests the regions of vertices. The region of a vertex is convex; it passes if it has exactly one part on the
+  /// boundary.
   VoronoiObstacle check_vertices() {
     const std::size_t first = t_.sites_.face_count + t_.sites_.reflex_edges.size();
     for (auto at = regions_of_site_.lower_bound(static_cast<std::uint32_t>(first)); at != regions_of_site_.end();
@@ -526,8 +527,8 @@ class CubeAnalysis {
   }
 
   /// Returns the number of tunnels of a face's region in the cube. Along the normal, the region extends from the face,
-  /// or from the cube's lower sides, up to walls. So it retracts to what it covers on the face and on the lower sides.
-  /// The Euler number of that is a sum over cells.
+  /// or from the cube's lower sides, up to walls. So the region retracts to the part that it covers on the face and on
+  /// the lower sides. The Euler number of this covered part is a sum over cells.
   /// @param components  number of components of the region in the cube.
   [[nodiscard]] std::int64_t tunnels(std::uint32_t face, std::size_t components) const {
     const LowerPart lower = lower_part(face);

@@ -29,7 +29,8 @@ class Cone {
     return detail::orient3d(v_, ends_[a], ends_[b], ends_[c]);
   }
 
-  /// Starts with three linearly independent constraints. Returns false if there are none.
+  /// Starts with three linearly independent constraints. Returns false if no three constraints are linearly
+  /// independent.
   bool begin() {
     const auto count = static_cast<std::uint32_t>(ends_.size());
     std::uint32_t second = 1;

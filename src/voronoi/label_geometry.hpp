@@ -158,15 +158,15 @@ class LabelGeometry {
     return std::span(planes_).subspan(labels_[label].first_plane,
                                       labels_[label].last_plane - labels_[label].first_plane);
   }
-  /// Returns those planes of a domain that decide if the label contains the foot of a point. Between them, the label is
-  /// as close as its plane, line or point. They are all planes of a triangle, the two planes through the ends of an
-  /// edge, and no plane of a vertex.
+  /// Returns those planes of a domain that decide if the label contains the foot of a point. Between these planes, the
+  /// label is as close as its plane, line or point. The planes are all planes of a triangle, the two planes through the
+  /// ends of an edge, and none for a vertex.
   [[nodiscard]] std::span<const DomainPlane> ends(LabelIndex label) const {
     const SiteKind kind = labels_[label].kind;
     return planes(label).first(kind == SiteKind::face ? 3 : kind == SiteKind::edge ? 2 : 0);
   }
-  /// Returns a plane that decides which of two labels is closer to points in both domains. It exists for two triangles,
-  /// two vertices, and two edges with a common end. Heights over it have errors of up to 2 rounding().
+  /// Returns a plane that decides which of two labels is closer to points in both domains. The plane exists for two
+  /// triangles, two vertices, and two edges with a common end. Heights over it have errors of up to 2 rounding().
   [[nodiscard]] std::optional<Bisector> bisector(LabelIndex a, LabelIndex b) const;
   /// Returns the bisector of two triangles for points behind the first triangle, where its distance is minus the
   /// height. Returns nullopt if a label is not a triangle.
@@ -201,18 +201,19 @@ class LabelGeometry {
   /// Returns true if a label's site is an edge or vertex of a given site, or vice versa. Between two such sites, the
   /// closer one changes only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
-  /// Returns the same for two sites.
+  /// Returns true if one of two sites is an edge or vertex of the other site.
   [[nodiscard]] bool are_neighbours(std::uint32_t site, std::uint32_t other) const;
-  /// A vertex is thin if its dual cone is narrower than this many radians. Its region counts as a part of walls.
+  /// A vertex is thin if its dual cone is narrower than this many radians. The region of a thin vertex is treated as a
+  /// part of walls.
   static constexpr double thin = 1e-3;
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
   /// Returns true if a label is a thin vertex; false for the outside.
   [[nodiscard]] bool is_thin(LabelIndex label) const {
     return std::binary_search(thin_vertices_.begin(), thin_vertices_.end(), label);
   }
-  /// A thin vertex is unseen if its dual cone is narrower than this many radians. It is treated as closest nowhere.
-  /// Such vertices are dents that rounding makes in flat faces. No grid with double coordinates could meet their
-  /// regions.
+  /// A thin vertex is unseen if its dual cone is narrower than this many radians. An unseen vertex is treated as
+  /// closest nowhere. Unseen vertices are dents that rounding makes in flat faces. No grid with double coordinates
+  /// could meet their regions.
   static constexpr double unseen = 1e-12;
   [[nodiscard]] bool is_unseen(LabelIndex label) const {
     return std::binary_search(unseen_vertices_.begin(), unseen_vertices_.end(), label);
@@ -241,7 +242,7 @@ class LabelGeometry {
   std::vector<Bisector> bisectors_;                          ///< three for each triangle, see bisectors()
   using ConvexPair = std::array<std::uint32_t, 3>;
   std::vector<ConvexPair> convex_pairs_;  ///< (site, site of a face across a convex edge, index in bisectors_); sorted
-  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` without a label or for an unseen one
+  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` without a label, or for an unseen vertex
 
   /// Pairs of sites of which one is an edge or vertex of the other. Each pair is listed in both orders; all are sorted.
   std::vector<std::array<std::uint32_t, 2>> neighbours_;
@@ -249,8 +250,8 @@ class LabelGeometry {
 
 /// Returns the labels that may be closest to a point in the convex hull of `corners` (Sud 2006, 5.4: governors of a
 /// cell). A label is excluded if its domain does not meet the hull. It is also excluded if one surface point, the point
-/// closest to `middle`, is closer than the label everywhere in the hull. This needs a test only at the corners. The
-/// reason: the squared distance from a plane, line or point minus that from the surface point is concave.
+/// closest to `middle`, is closer than the label everywhere in the hull. A test at the corners suffices, because the
+/// squared distance from a plane, line or point minus that from the surface point is concave.
 ///
 /// @param among  includes all labels that are closest to a point in the hull.
 /// @param corners  relative to the centre of the labels, as is `middle`, which lies between the corners.

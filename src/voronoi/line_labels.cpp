@@ -29,7 +29,7 @@ class SegmentSearch {
     return Place{at, closest[0]};
   }
 
-  /// Adds the changes of the closest site between two points. Returns false if they cannot be decided.
+  /// Adds the changes of the closest site between two points. Returns false if the changes cannot be decided.
   bool add_changes(const Place& begin, const Place& end, std::span<const Label> among, SegmentLabels& out) const {
     const std::vector<Label> left = labels_left(begin, end, among);
     if (is_one_site(left)) return true;
@@ -259,7 +259,8 @@ class EnvelopeWalk {
     return end.beyond != outside && labels_[end.beyond].site == candidate.site;
   }
 
-  /// Cancels a change that lies outside the label's domain. Marks the change as uncertain if that is not certain.
+  /// Cancels a change that lies outside the label's domain. Marks the change as uncertain if it is not certain that it
+  /// lies outside.
   /// @param is_next  true if the change crosses a bisector at a convex edge or common end. There the domains overlap.
   void check_domain(const Candidate& candidate, Change& change, bool is_next) const {
     for (const int side : {-1, 1}) {
@@ -406,7 +407,8 @@ class EnvelopeWalk {
     for (const Change& change : changes) {
       if (change.at < first.at) first = change;
     }
-    // Inside the solid, a domain ends only where another site is closest. So a change was missed.
+    // Inside the solid, a domain ends only where another site is closest. If no other site is closest there, a change
+    // was missed.
     if (!(first.at < infinity) && end.at + end.error < high_) is_certain = false;
     if (!(first.at - first.error <= high_)) return first;
     if (!first.is_certain) is_certain = false;

@@ -24,7 +24,7 @@ namespace blum::voronoi {
 /// Near a vertex v the diagram is a cone. There, the region of v is the dual cone of its edges. Each facet of this cone
 /// is a wall between v and an edge. These walls meet in rays of the cone, and some rays are normals of faces. A passing
 /// vertex has no region. Instead, a wall lies between its two edges, in the plane at a right angle to them. The region
-/// of a thin vertex counts as a line. If a thin vertex has no convex edge, all walls around that line are dropped.
+/// of a thin vertex is treated as a line. If a thin vertex has no convex edge, all walls around that line are dropped.
 struct ReflexCorner {
   std::vector<std::uint32_t> edges;  ///< sites of the edges
   /// For each edge: unit vectors along the two rays that bound its facet.
@@ -47,8 +47,8 @@ struct ReflexCorner {
 [[nodiscard]] std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& table,
                                                        const PolyhedronSites& sites, const LabelGeometry& labels);
 
-/// Rule for the walls that the requested part of the diagram drops. The regions on both sides of a dropped wall count
-/// as joined.
+/// Rule for the walls that the requested part of the diagram drops. The regions on both sides of a dropped wall are
+/// treated as joined.
 class PartRule {
  public:
   PartRule(VoronoiPart part, const PolyhedronSites& sites, const LabelGeometry& labels,
@@ -81,7 +81,7 @@ class PartRule {
   /// Returns the passing vertex at which two edges meet; nullopt for other pairs of sites.
   [[nodiscard]] std::optional<std::uint32_t> passing_vertex(std::uint32_t edge, std::uint32_t other) const;
   /// Returns pairs of the given edge and a thin vertex at one of its ends. Thin vertices with
-  /// convex edges are left out. Only around the others are all walls dropped.
+  /// convex edges are left out. All walls are dropped only around thin vertices without convex edges.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> thin_ends(std::uint32_t edge) const;
   /// Returns the sites of the faces on both sides of an edge.
   [[nodiscard]] std::array<std::uint32_t, 2> faces_of(std::uint32_t edge) const;
@@ -109,7 +109,7 @@ class PartRule {
   std::vector<std::array<std::uint32_t, 2>> thin_ends_;  ///< (edge, vertex), sorted
 };
 
-/// A thin region that counts as a line and meets the border of a square.
+/// A thin region that is treated as a line and meets the border of a square.
 struct ThinRegion {
   std::uint32_t vertex = 0;         ///< vertex of the mesh
   std::vector<std::size_t> events;  ///< events of the border in the region, as indices in SquareCells

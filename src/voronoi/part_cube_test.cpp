@@ -17,7 +17,8 @@ VoronoiObstacle PartOfCube::find(CubeCells& out) {
   number_components(out);
   const std::int64_t on_boundary = out.component_count;
   if (components != on_boundary) {
-    // Some components on the boundary are connected inside the cube. Only if all are connected is it known which ones.
+    // Some components on the boundary are connected inside the cube. It is known which components are connected only if
+    // all of them are.
     if (components != 1 || on_boundary == 0) return VoronoiObstacle::joins;
     for (CubeCells::Square& square : out.squares) square.component.assign(square.component.size(), 0);
     out.component_count = 1;
@@ -36,7 +37,7 @@ void PartOfCube::collect() {
       const Pair sites{square.cells.pieces[a].site, square.cells.pieces[b].site};
       walls_[{std::min(sites[0], sites[1]), std::max(sites[0], sites[1])}].push_back(s);
     }
-    // In a square, each dropped arc counts as -1, and each dropped point as 1.
+    // In a square, each dropped arc contributes -1, and each dropped point contributes 1.
     corners_.insert(parts_.back().corners.begin(), parts_.back().corners.end());
     euler_ += static_cast<std::int64_t>(parts_.back().corners.size());
     euler_ -= static_cast<std::int64_t>(parts_.back().arcs.size());
@@ -49,7 +50,7 @@ void PartOfCube::collect() {
 }
 
 /// Joins components of squares that share an event on an edge of the grid, and counts dropped events. Returns false if
-/// two squares disagree about an event. This happens near nodes with contradictory sites.
+/// two squares disagree about an event. Squares disagree near nodes with contradictory sites.
 bool PartOfCube::join_events() {
   struct AtEvent {
     std::uint32_t event, square, component;
@@ -102,8 +103,8 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
   return VoronoiObstacle::none;
 }
 
-/// Returns true if a dropped wall that starts at an edge or vertex in the cube does not reach the cube's boundary.
-/// Returns true, too, if a dropped line at a vertex does not reach it.
+/// Returns true if a dropped wall that starts at an edge or vertex in the cube does not reach the cube's boundary. Also
+/// returns true if a dropped line at a vertex does not reach the boundary.
 bool PartOfCube::is_any_wall_inside() const {
   const auto has_wall = [&](std::uint32_t a, std::uint32_t b) {
     return walls_.contains({std::min(a, b), std::max(a, b)});
@@ -205,7 +206,7 @@ PartOfCube::ThinOnBoundary PartOfCube::thin_on_boundary(std::uint32_t v) const {
 }
 
 /// Returns true if the far end of a thin region may lie in the cube. It may if another label can be closest to a point
-/// on the region's axis, or within the region's width of it. Labels with the region's vertex as corner do not count.
+/// on the region's axis, or within the region's width of it. Labels with the region's vertex as corner are ignored.
 bool PartOfCube::may_end_inside(std::uint32_t v) const {
   const Vec3d at = solid_.mesh.vertices[v] - solid_.labels.centre();
   const Vec3d way = solid_.corners[v].rays[0][0];

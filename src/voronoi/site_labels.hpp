@@ -94,11 +94,11 @@ class SiteLabels {
   /// pairs of its corners.
   [[nodiscard]] int compare_polar(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const;
 
-  /// Returns the labels that are closest to a point: several on walls. The result is exact for points in the solid. It
-  /// has no meaning outside, where other edges and vertices may be closest. Cost: O(labels). This is the slow reference
-  /// for faster methods.
+  /// Returns the labels that are closest to a point: several on walls. The result is exact for points in the solid. The
+  /// result has no meaning outside the solid, where other edges and vertices may be closest. Cost: O(labels). This is
+  /// the slow reference for faster methods.
   [[nodiscard]] std::vector<Label> closest_labels(const Vec3d& q) const;
-  /// Does the same with a search among the given labels, which must include all closest ones.
+  /// Returns the closest labels among the given labels, which must include all labels that are closest.
   [[nodiscard]] std::vector<Label> closest_labels(std::span<const Label> among, const Vec3d& q) const;
   /// Returns true if the labels are a triangle and one of its edges, or an edge and one of its ends. Then their squared
   /// distances differ by a square, which is 0 only on the plane between their domains.

@@ -246,7 +246,7 @@ bool SquareTest::resolve(GridSquare& square) const {
   const auto is_cone = [&] { return square.chains.empty() && is_over_one_vertex(present, whole); };
   bool is_any_doubtful = false;
   for (const LabelIndex label : square.governors) {
-    // Thin regions count as parts of walls, so they need not be absent.
+    // Thin regions are treated as parts of walls, so they may exist.
     if (labels_.is_thin(label) || std::binary_search(sites.begin(), sites.end(), labels_[label].site)) {
       present.push_back(label);
       continue;
@@ -318,8 +318,8 @@ std::vector<std::uint32_t> SquareTest::sites_of_one_run(const GridSquare& square
   return out;
 }
 
-/// Returns true if a label is closest nowhere in a square. Returns true, too, if it is closest only near a point over
-/// one of its corners, where its region cannot be a separate component.
+/// Returns true if a label is closest nowhere in a square. Also returns true if the label is closest only near a point
+/// over one of its corners, where its region cannot be a separate component.
 bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const {
   const Polygon part = in_domain(label, whole);
   const bool by_incident = !is_thin(label, whole);
@@ -453,7 +453,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   for (const Candidate& candidate : candidates) {
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
-    // Points over a face are not in the domains of its edges. The converse is not known.
+    // Points over a face are not in the domains of its edges. The converse need not hold.
     const bool is_part_of_it = labels_[other].kind < labels_[label].kind;
     if (are_incident && (!allowed.by_incident || is_part_of_it)) continue;
     const bool from_behind = is_behind(other, middle);
@@ -602,8 +602,9 @@ SquareTest::Polygon SquareTest::along_plane(LabelIndex label, const DomainPlane&
 }
 
 /// Returns true if the region of a site certainly has no common border with the region of another label in a square.
-/// Two triangles at a reflex edge have none. Otherwise, where the domains meet, a third label must be closer, or the
-/// common points must lie over a common corner. Over a corner the diagram is a cone, in which regions are connected.
+/// Two triangles at a reflex edge have no common border. Otherwise, where the domains meet, a third label must be
+/// closer, or the common points must lie over a common corner. Over a corner the diagram is a cone, in which regions
+/// are connected.
 bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                             const Polygon& of_other) const {
   return std::all_of(own.labels.begin(), own.labels.end(), [&](LabelIndex label) {

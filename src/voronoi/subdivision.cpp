@@ -166,8 +166,8 @@ class Subdivider {
     });
   }
 
-  /// Returns true if a cube has too many governors for its test, and splits have reduced their number so far. Returns
-  /// true, too, if the cube is less deep than the least depth and may contain points of the requested part.
+  /// Returns true if a cube has too many governors for its test, and splits have reduced their number so far. Also
+  /// returns true if the cube is less deep than the least depth and may contain points of the requested part.
   [[nodiscard]] bool is_crowded(const GridCube& cube, int depth) const {
     constexpr std::size_t many = 64;
     if (depth < 1) return true;
@@ -258,9 +258,9 @@ void CellSplitter::add_root(int grid) {
   const Box3& box = labels_.box();
   const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
-  // Planes of the grid must not coincide with features of typical shapes, at simple fractions of their size. Nor may
-  // they coincide with seams between faces, which often lie at square roots. So the shifts along the three axes are
-  // derived from gamma, e and 1 / pi.
+  // Planes of the grid must not coincide with features of typical shapes, at simple fractions of their size. The planes
+  // must not coincide with seams between faces either, which often lie at square roots. So the shifts along the three
+  // axes are derived from gamma, e and 1 / pi.
   const Vec3d fractions{std::numbers::egamma, std::numbers::e - 2, std::numbers::inv_pi};
   Vec3d shift;
   for (std::size_t axis = 0; axis < 3; ++axis) shift[axis] = std::fmod(fractions[axis] * (grid + 1), 1.0) - 0.5;

@@ -13,7 +13,7 @@
 
 namespace blum::voronoi {
 
-/// Exact tests of a mesh against the cells of a grid. The planes of the grid count as moved by infinitely small
+/// Exact tests of a mesh against the cells of a grid. The planes of the grid are treated as moved by infinitely small
 /// amounts, so that nothing lies exactly in them (grid_predicates.hpp).
 class SurfaceInCells {
  public:

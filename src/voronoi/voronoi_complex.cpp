@@ -82,7 +82,7 @@ void check_distance(const MeshView& mesh) {
 }
 
 /// @throws InvalidMesh if the solid is not a polyhedron, its mesh has segments or points, or its surface touches
-///   itself. Also if check_distance() throws.
+///   itself. Also throws if check_distance() throws.
 void check(const Solid& solid) {
   if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
   const MeshView surface = solid.surface().mesh;
@@ -348,8 +348,9 @@ std::string trace(const Solid& solid, const SiteTable& table, const TracedSites&
   return problem;
 }
 
-/// Traces the diagram in several ways, until one succeeds. Merged places have the structure of symmetric solids. Where
-/// coordinates are rounded, symmetry is broken, and separate places may succeed.
+/// Traces the diagram with several methods, until one succeeds. If close places are merged, the result has the
+/// structure of symmetric solids. Rounded coordinates break symmetry, and tracing may then succeed with separate
+/// places.
 void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& exact, const VoronoiOptions& options,
            PhaseTimer& timer, VoronoiComplex& out, const Context& context) {
   const MeshView mesh = solid.surface().mesh;
@@ -365,7 +366,7 @@ void trace(const Solid& solid, const SiteTable& table, const PolyhedronSites& ex
     timer.lap("sites");
     std::string problem = "joined triangles do not make flat faces";
     if (sites) {
-      // Separate ways with the same faces are the same.
+      // Attempts with separate places and the same faces have the same result.
       if (places == TracedPlaces::separate) {
         if (tried == sites->faces()) continue;
         tried = sites->faces();

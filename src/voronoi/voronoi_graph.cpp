@@ -22,8 +22,8 @@ using detail::sort_unique;
 
 class GraphBuilder {
  public:
-  /// @param of_patches  true if the sites of the complex are patches. Then a mark in the column `junction` may be that
-  ///                    of a point inside a patch's wall or seam.
+  /// @param of_patches  true if the sites of the complex are patches. In this case, a mark in the column `junction` may
+  ///                    be that of a point inside a patch's wall or seam.
   GraphBuilder(const Complex& complex, bool of_patches, const Context& context)
       : complex_(complex),
         of_patches_(of_patches),

@@ -15,7 +15,7 @@
 
 namespace blum::verifier {
 
-/// For each edge of an axis: the curtains that it crosses on a way inside the solid. The way of a pushed edge leads
+/// For each edge of an axis: the curtains that it crosses on a path inside the solid. The path of a pushed edge leads
 /// through the points to which it was pushed. An edge that touches a path is led past the path, inside the solid. A
 /// vertex that is closer to the surface than a fraction of the tolerance is moved: a little towards its deepest
 /// neighbour, or further inside.
@@ -35,17 +35,17 @@ class AxisLabels {
   [[nodiscard]] const std::set<std::uint32_t>& doubtful() const { return doubtful_; }
   [[nodiscard]] bool is_doubtful(std::uint32_t edge) const { return doubtful_.contains(edge); }
 
-  /// Returns the triangles whose borders are linked with a path, in ascending order. Before a triangle counts, its
+  /// Returns the triangles whose borders are linked with a path, in ascending order. Before a triangle is listed, its
   /// edges are tested as closely as doubles allow. If an edge cuts off a corner of the solid by less than the
   /// tolerance, its way is led around the corner.
   [[nodiscard]] std::vector<std::uint32_t> triangles_across(const Context& context);
 
-  /// Does the same close tests for edges that leave the solid by at most the tolerance. Inside the solid, the way
+  /// Tests edges that leave the solid by at most the tolerance as closely as doubles allow. Inside the solid, the way
   /// beside such an edge may pass a path on the other side.
   void look_at_grazing(const Context& context);
 
-  /// Does the same close tests for edges with an end less deep than the tolerance of edges, edges of curves first. In
-  /// thin parts, such edges may pass a path within that tolerance.
+  /// Tests edges with an end less deep than the tolerance of edges as closely as doubles allow, edges of curves first.
+  /// In thin parts, such edges may pass a path within that tolerance.
   /// @return  true if any label changed.
   bool look_at_thin_parts(const Context& context);
 
@@ -66,9 +66,9 @@ class AxisLabels {
   /// Returns the way of an edge from its first end to its second, through the points to which it was pushed.
   [[nodiscard]] Way way_of(std::uint32_t edge) const;
   [[nodiscard]] bool is_across(std::size_t triangle, SparseRow& row) const;
-  /// Treats triangles that are across, which means linked with a path. Leads an edge of one over its other two sides,
-  /// provided that fewer triangles are across then. A pushed edge may pass on either side of what it cut. Triangles
-  /// that are no longer across are removed from the list. Each step reduces their number, so this ends.
+  /// Treats triangles that are across, which means linked with a path. An edge of such a triangle is led over the
+  /// triangle's other two sides, if fewer triangles are across then. A pushed edge may pass on either side of what it
+  /// cut. Triangles that are no longer across are removed from the list. Each step reduces their number, so this ends.
   void lead_over_triangles(std::vector<std::uint32_t>& across, const Context& context);
   /// Returns the labels of a way over two sides of a triangle, from the first end of the third side to its second end.
   [[nodiscard]] std::vector<Label> over_other_sides(std::uint32_t triangle, std::size_t side) const;

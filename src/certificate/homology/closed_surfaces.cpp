@@ -143,8 +143,8 @@ class Sheets {
   std::vector<std::uint32_t> first_;
 };
 
-/// The border of each sheet: how often it runs along each seam, with sign. Seams with the same sheets and signs count
-/// once.
+/// The border of each sheet: how often it runs along each seam, with sign. Seams with the same sheets and signs are
+/// counted once.
 struct Borders {
   std::vector<SparseRow> rows;
   std::uint32_t columns = 0;

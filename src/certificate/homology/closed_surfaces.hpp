@@ -28,7 +28,7 @@ struct Windings {
 /// repeatedly. The others are grouped into sheets, which are connected over edges of two triangles. Elimination at the
 /// seams yields the cycles of sheets. Crossings of sheets with lines from the voids show how often each cycle winds
 /// around each void. This is repeated for all points of each void, because a surface that passes through a void
-/// encloses only some of them. Duplicate triangles count once.
+/// encloses only some of them. Duplicate triangles are counted once.
 /// @param body_of  for each vertex.
 /// @throws Cancelled. Cost: linear, except for the elimination, which is cheap because sheets are few.
 [[nodiscard]] Windings windings(const ComplexView& axis, const Incidence& incidence,

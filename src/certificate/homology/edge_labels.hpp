@@ -31,12 +31,12 @@ class Apex {
   /// Returns a bound on the rounding errors of such boxes.
   [[nodiscard]] double rounding() const { return 1e-9 * size_; }
 
-  /// Returns how often the segment from a to b crosses the curtain of the segment from u to v. It is 1 or -1, depending
-  /// on the side from which the segment comes, or 0. Returns nullopt if it meets the border of the curtain, or lies in
-  /// its plane.
+  /// Returns how often the segment from a to b crosses the curtain of the segment from u to v. The result is 1 or -1,
+  /// depending on the side from which the segment comes, or 0. Returns nullopt if the segment meets the border of the
+  /// curtain, or lies in its plane.
   [[nodiscard]] std::optional<int> crossing(const Vec3d& u, const Vec3d& v, const Vec3d& a, const Vec3d& b) const;
 
-  /// Returns the same for the segment from p to the apex and the triangle a, b, c.
+  /// Returns how often the segment from p to the apex crosses the triangle a, b, c.
   [[nodiscard]] std::optional<int> crossing_above(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
 
  private:
@@ -71,8 +71,8 @@ class Curtains {
 
   /// Finds the curtains that may meet a box, as indices in the tree's order.
   void near(const Box3& seen, std::vector<std::uint32_t>& places) const;
-  /// Does the same as the other add(), for the segment from a to b and the curtains `places` only. `seen` is the box of
-  /// both projected ends.
+  /// Adds the crossings of the segment from a to b with the curtains `places` only. `seen` is the box of both projected
+  /// ends.
   [[nodiscard]] bool add(const Vec3d& a, const Vec3d& b, const Box3& seen, std::uint32_t body,
                          std::span<const std::uint32_t> places, std::vector<Label>& labels) const;
   [[nodiscard]] const Apex& apex() const { return apex_; }

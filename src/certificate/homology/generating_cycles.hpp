@@ -23,7 +23,7 @@ struct CellGraph {
 /// Edges that close cycles which generate the fundamental group of each component. First, cells with free edges are
 /// removed repeatedly. Then a shortest-path tree of the remaining graph is built. An edge closes a cycle unless a cell
 /// expresses it by the tree and earlier edges. If everything collapses to a graph or to spheres, the number of these
-/// edges is that of the tunnels. Otherwise it is a little larger.
+/// edges is that of the tunnels. In all other cases, the number is a little larger.
 class GeneratingCycles {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;

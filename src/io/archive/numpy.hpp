@@ -47,7 +47,7 @@ struct NpyHeader {
 /// Returns the number of values of a scalar array.
 /// @throws FormatError if the array contains text, or if the stream is too short for that many values.
 [[nodiscard]] std::uint64_t check_npy_values(const ByteStream& stream, const NpyHeader& header);
-/// Reads values in the order of the file. Converts them to the machine's byte order. @throws FormatError.
+/// Reads values in the order of the file. Converts the values to the machine's byte order. @throws FormatError.
 void read_npy_raw(ByteStream& stream, const NpyHeader& header, std::span<std::byte> out);
 /// Reads the values of a scalar array, in C order of its shape. @throws FormatError, OutOfMemory.
 [[nodiscard]] VoxelImage::Values read_npy_values(ByteStream& stream, const NpyHeader& header);

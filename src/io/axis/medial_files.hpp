@@ -27,9 +27,9 @@ struct MedialColumns {
   bool labels = false;  ///< columns of sheets and roles
 };
 
-// The next two functions convert the complex of a file. Columns that MedialView or MedialLevels requires get their
-// order and types; other columns follow. Any numeric type that can represent the values is converted. Both functions
-// throw FormatError with `name` if a column cannot belong to an axis.
+// The functions to_axis() and to_nested() convert the complex of a file. Columns that MedialView or MedialLevels
+// requires get their order and types; other columns follow. Any numeric type that can represent the values is
+// converted. Both functions throw FormatError with `name` if a column cannot belong to an axis.
 
 /// Returns the complex of an axis. Columns that are missing for vertices, edges or triangles are added only if the
 /// complex has no elements of that kind. If edges have no roles, edges that are sides of triangles are removed.

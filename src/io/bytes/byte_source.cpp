@@ -143,7 +143,7 @@ FileBytes read_to_end(const Descriptor& file, const struct stat& info, const std
   return {std::move(bytes), size};
 }
 
-/// Device and inode. They identify a pipe, by whichever path it is named.
+/// Device and inode. Device and inode identify a pipe, whatever path names it.
 using PipeKey = std::pair<dev_t, ino_t>;
 
 /// Returns the key of the pipe that a path names; nullopt if it names no pipe. The path is not opened: opening a pipe
@@ -167,7 +167,7 @@ std::string text_head(std::span<const std::byte> bytes, std::size_t size) {
 /// Content of pipes that were read, but whose bytes are still needed.
 class KeptPipes {
  public:
-  /// Returns the content of a pipe, and keeps it. The pipe is read now if its content is not kept yet.
+  /// Returns the content of a pipe, and keeps it. If the content is not kept yet, the pipe is read now.
   [[nodiscard]] std::shared_ptr<const FileBytes> keep(const PipeKey& key, const std::filesystem::path& path) {
     {
       const std::scoped_lock lock(mutex_);
@@ -177,7 +177,7 @@ class KeptPipes {
     const std::scoped_lock lock(mutex_);
     return pipes_.emplace(key, std::move(bytes)).first->second;
   }
-  /// Returns the content of a pipe if it is kept, and does not keep it any more.
+  /// Returns the content of a pipe if it is kept, and forgets it.
   [[nodiscard]] std::shared_ptr<FileBytes> take(const PipeKey& key) {
     const std::scoped_lock lock(mutex_);
     const auto at = pipes_.find(key);
@@ -318,8 +318,8 @@ InflateStream::~InflateStream() {
 
 std::uint64_t InflateStream::most_left() const {
   if (state_->finished) return 0;
-  // Bits that are already read may represent one more byte of input, and a match may be half copied. The 8 bytes cover
-  // both.
+  // Bits that are already read may represent one more byte of input, and a match may be half copied. The 8 bytes allow
+  // for both cases.
   const std::uint64_t input = end_ - at_ + state_->z.avail_in + 8;
   return input > std::numeric_limits<std::uint64_t>::max() / largest_ratio ? std::numeric_limits<std::uint64_t>::max()
                                                                            : input * largest_ratio;

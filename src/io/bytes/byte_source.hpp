@@ -48,8 +48,8 @@ class ByteSource {
 
 /// Use of the bytes of a pipe, which can be read only once.
 enum class PipeUse : std::uint8_t {
-  take,   ///< the source takes them; later readers get none
-  keep,   ///< the next reader gets them, too
+  take,   ///< the source takes the bytes; later readers get none
+  keep,   ///< the next reader also gets the bytes
   refuse  ///< it is an error if the file is a pipe
 };
 

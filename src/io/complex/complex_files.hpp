@@ -102,12 +102,13 @@ void check_name(std::string_view name, const char* what, const std::string& wher
 
 /// Adds a column read from a file.
 /// @throws FormatError with `where` if the name is already in use or not text, or if the number of rows differs from
-/// other columns. Also if there would be more than max_file_columns columns, or if the number of components is not 1 to
-/// max_file_columns.
+/// other columns. FormatError is also thrown if there would be more than max_file_columns columns, or if the number of
+/// components is not 1 to max_file_columns.
 void add_column(Columns& columns, Column column, const std::string& where);
 
-/// Returns columns in which row i is repeated counts[i] times. This is for cells of files that become several cells.
-/// @param file_size  size of the file in bytes. It limits the size of the copies.
+/// Returns columns in which row i is repeated counts[i] times. The function is used for cells of files that become
+/// several cells.
+/// @param file_size  size of the file in bytes. The size of the file limits the size of the copies.
 /// @throws FormatError with `where` if the copies would be many times as large as the file.
 [[nodiscard]] Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, std::uint64_t file_size,
                                const std::string& where);

@@ -1,5 +1,5 @@
 // Indices are stored as int32. All ids of Blum fit, and NumPy accepts any integer type as index. Differences of int32
-// indices are correct; those of unsigned ones are not.
+// indices are correct; differences of unsigned indices are not.
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -79,8 +79,8 @@ std::string header_text(const Complex& complex, const FileMetadata& metadata) {
   if (has_derived) out += "property float " + std::string(derived_property) + "\n";
   out += "element face " + std::to_string(complex.triangles.size()) + "\nproperty list uchar int vertex_indices\n" +
          property_lines(complex.triangle_columns, of_faces);
-  // Some readers, for example trimesh, treat everything in `edge` as corners. Others reject files with edges. So edges
-  // are written only if they are needed.
+  // Some readers, for example trimesh, treat everything in `edge` as corners. Some readers reject files with edges. So
+  // edges are written only if they are needed.
   if (!complex.edges.empty() || !complex.edge_columns.empty()) {
     out += "element edge " + edges + "\nproperty int vertex1\nproperty int vertex2\n";
   }

@@ -75,13 +75,13 @@ PlyNames property_names(const Columns& columns, std::string_view element, const 
     for (std::size_t i = 0; i < column.components; ++i) {
       std::string name = component_name(column, i);
       while (!used.insert(name).second) name += "_";
-      // The rule for reading only checks if types are equal. So values that differ between types are enough.
+      // The rule for reading only checks if types are equal. So it suffices that the values of different types differ.
       properties.push_back({name, false, PlyType::uint8, static_cast<PlyType>(column.values.index())});
       names.properties.push_back(std::move(name));
     }
   }
   // A column needs a comment only if the rule for reading finds a different column at its position. A comment takes
-  // effect at the first property of its column. So every column that would be read differently gets one.
+  // effect at the first property of its column. So every column that would be read differently gets a comment.
   const std::vector<PlyColumn> read = find_columns(properties, element, {});
   std::size_t c = 0;
   for (const Column& column : columns) {

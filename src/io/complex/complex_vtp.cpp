@@ -134,8 +134,8 @@ struct CellColumns {
   }
 };
 
-/// Returns the numbers for single vertices (cells of a vertex each). They come from the vertex column with the same
-/// name, converted to T. If T may not represent the values, they are the fill value.
+/// Returns the numbers for single vertices (cells of a vertex each). The numbers come from the vertex column with the
+/// same name, converted to T. If T cannot represent the values, the numbers are the fill value.
 template <class T>
 std::vector<T> numbers_of_verts(const Columns& columns, const std::string& name, std::size_t components,
                                 std::span<const std::uint32_t> verts) {
@@ -460,7 +460,7 @@ class VtpReader {
     Complex& complex = file_.complex;
     if (header_.points > 0) {
       const VoxelImage::Values places = needed_values("Points/Points", header_.points, 3, "the number of points");
-      // Allocated only now: the array that was just read is as long, so the file is large enough.
+      // Memory is allocated only now: the array that was just read has the same length, so the file is large enough.
       complex.positions.resize(header_.points);
       for_each_number(places, [&](std::size_t i, double value) { complex.positions[i / 3][i % 3] = value; });
     }

@@ -20,7 +20,7 @@
 
 namespace blum::volume_io {
 
-/// Arrays of a field that are stored in separate NRRD files next to that of the distances, in the order of
+/// Arrays of a field that are stored in separate NRRD files next to the file of the distances, in the order of
 /// beside_arrays.
 enum class BesideArray : std::uint8_t { site, distance2, site2 };
 inline constexpr std::array beside_arrays{BesideArray::site, BesideArray::distance2, BesideArray::site2};

@@ -26,9 +26,9 @@ void write_values_after(const std::filesystem::path& path, const std::string& he
 /// Returns a stream of the bytes of a source. They are decompressed if they start like a gzip file.
 [[nodiscard]] std::unique_ptr<ByteStream> open_plain_or_gzip(const ByteSource& source);
 
-/// Largest absolute cosine between two axes of a file, and largest deviation of a unit axis from length 1. It covers
-/// rounding to six digits or to float32. If all axes are within it, they are replaced by the nearest perpendicular
-/// ones.
+/// Largest absolute cosine between two axes of a file, and largest deviation of a unit axis from length 1. The limit
+/// covers rounding to six digits or to float32. If all axes are within it, they are replaced by the nearest
+/// perpendicular ones.
 inline constexpr double frame_tolerance = 1e-4;
 
 /// Sets the spacing and direction of a grid. They are given by a unit vector and a step for each index axis.
@@ -48,8 +48,8 @@ void set_frame(GridSpec& grid, const std::array<std::optional<Vec3d>, 3>& steps,
 /// is the smallest spacing of `a` among axes with several voxels. The result is NaN if a position is NaN.
 [[nodiscard]] double frame_distance(const GridSpec& a, const GridSpec& b);
 
-/// Frames of one file that place no corner voxel farther apart than this, in voxels, agree. Rounding to float32 and
-/// programs that recompute a frame cause such differences.
+/// Two frames of a file agree if the positions of each corner voxel are at most this far apart, in voxels. Rounding to
+/// float32 and programs that recompute a frame cause such differences.
 inline constexpr double largest_frame_distance = 0.1;
 
 /// Returns the orthonormal matrix nearest to a given matrix, which must be nearly orthonormal (polar decomposition by

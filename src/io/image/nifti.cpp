@@ -234,7 +234,8 @@ void read_both(const NiftiHeader& header, ImageFile& file, const std::string& na
   try {
     set_sform(header, grid, name);
   } catch (const FormatError&) {
-    // Registration may have put shear into the sform. Then the qform, which has the scanner's grid, is used.
+    // Registration may have put shear into the sform. If the sform has shear, the qform, which has the scanner's grid,
+    // is used.
     set_qform(header, grid, name);
     add("the sform " + sform_problem(header) + "; the qform is used instead");
     return;
@@ -297,8 +298,8 @@ VoxelImage::Values scaled(const VoxelImage::Values& values, double slope, double
       values);
 }
 
-/// Returns the number of bytes to skip before the data. It is counted from the start of a separate data file, or from
-/// the end of the header.
+/// Returns the number of bytes to skip before the data. The number is counted from the start of a separate data file,
+/// or from the end of the header.
 std::uint64_t gap(const NiftiHeader& header, const std::string& name) {
   // Some writers leave the offset at 0. The data then follow the header and its four bytes of extension flags.
   const bool unset = !header.detached && header.data_offset == 0;

@@ -33,9 +33,9 @@ struct NrrdHeader {
   std::vector<Warning> warnings;  ///< frames that disagree, see ImageFile
 };
 
-/// Returns the header of a file whose raw data follow in the machine's byte order. It includes the empty line at its
-/// end.
-/// @param space  same meaning as VoxelImage::space. It is left out if NRRD does not know it.
+/// Returns the header of a file whose raw data follow in the machine's byte order. The header includes the empty line
+/// at its end.
+/// @param space  same meaning as VoxelImage::space. The space is left out if NRRD does not know it.
 [[nodiscard]] std::string nrrd_header(ScalarType type, const GridSpec& grid, const std::string& space,
                                       const Metadata& key_values);
 

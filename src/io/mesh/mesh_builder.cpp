@@ -18,7 +18,7 @@ using Point = std::array<double, 2>;
 
 /// Projects the corners of a polygon along the coordinate axis closest to its mean normal (Newell's). The result is
 /// counter-clockwise, and scaled by a power of two. Both steps are exact, so corners that lie on edges stay on them.
-/// Together they are an affine map of the polygon's plane.
+/// Together, both steps are an affine map of the polygon's plane.
 /// @returns empty if the area of the polygon is negligible.
 std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners) {
   Box3 box;

@@ -200,8 +200,8 @@ ColorScale color_scale_of(const SurfaceMap& map, const SurfaceMapWriteOptions& o
     return scale(first, second);
   }
   const auto range = finite_range(map).value_or(std::pair{0.0, 0.0});
-  // The scale for distances starts at 0. That for thicknesses does not: a thickness is not measured from a reference,
-  // and walls often differ little.
+  // The scale for distances starts at 0. The scale for thicknesses does not start at 0: a thickness is not measured
+  // from a reference, and walls often differ little.
   const bool is_thickness =
       map.quantity == SurfaceQuantity::ray_thickness || map.quantity == SurfaceQuantity::ball_thickness;
   double lowest = is_signed(map) ? std::min(range.first, 0.0) : 0.0;

@@ -24,7 +24,7 @@ std::string json_string(const std::string& text) {
   return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// Reader of one flat object of strings; it keeps their order. Anything else stops the parser at once, so that deep
+/// Reader of one flat object of strings; it keeps their order. Any other JSON stops the parser at once, so that deep
 /// nesting costs nothing.
 class FlatObject final : public nlohmann::json_sax<json> {
  public:

@@ -61,8 +61,8 @@ class HeaderReader {
   }
 
  private:
-  /// Moves behind the end of this line. The first line defines how lines end. The reason: in a binary file whose lines
-  /// end in CR, the data may start with the byte LF.
+  /// Moves behind the end of this line. The first line defines how lines end. Later lines are not examined because, in
+  /// a binary file whose lines end in CR, the data may start with the byte LF.
   std::string_view take_line_end() {
     cursor_.skip_blanks();
     const char* const start = cursor_.position();

@@ -95,8 +95,8 @@ class Thinner {
   }
 
  private:
-  /// Returns true if the solid's depths are above zero for all voxels of the set and for no others. This is false if an
-  /// extra cell of the model replaces a voxel.
+  /// Returns true if the solid's depths are above zero for all voxels of the set and for no others. The result is false
+  /// if an extra cell of the model replaces a voxel.
   static bool is_depth_enough(const VoxelSolid& solid, const VoxelSet& voxels, const Context& context) {
     const auto layers = static_cast<std::size_t>(solid.grid.size[2]);
     std::vector<std::uint8_t> is_enough(layers, 1);
@@ -173,7 +173,8 @@ constexpr unsigned middle = place_of_voxel;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// Returns true if one cell of a voxel is a face of another one. Both arguments are places (see place_of_voxel).
+/// Returns true if one cell of a voxel is a face of another cell of the voxel. Both arguments are places (see
+/// place_of_voxel).
 constexpr bool is_face(unsigned face, unsigned cell) {
   const auto f = along_axes(face);
   const auto c = along_axes(cell);

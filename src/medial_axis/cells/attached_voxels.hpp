@@ -51,9 +51,9 @@ inline constexpr std::array<Neighbourhood, 27> sharers_of_place = [] {
   return sharers;
 }();
 
-/// Voxels of a model that touch an extra cell, or a cell that stays. For these, the 26 neighbours do not determine
-/// which cells a voxel shares with the rest of the model. Extra cells that no voxel contains stay when voxels are
-/// removed, and so do their faces.
+/// Voxels of a model that touch an extra cell, or a cell that stays. The 26 neighbours of such a voxel do not determine
+/// which cells it shares with the rest of the model. Extra cells that no voxel contains stay when voxels are removed,
+/// and so do their faces.
 class AttachedVoxels {
  public:
   /// @param model  a complex that contains all `voxels`. It must outlive this object.
@@ -115,9 +115,9 @@ class AttachedVoxels {
 /// importance is above 0. The closed voxels collapse to the result: the cells of a simple voxel can be removed by
 /// elementary collapses (Couprie, Bertrand 2009).
 ///
-/// First, each voxel is examined as if all its shallower neighbours were removed. This happens in parallel, in any
-/// order. Then the voxels that could not be removed, and the deeper neighbours of voxels that stay, are examined one by
-/// one.
+/// First, each voxel is examined as if all its shallower neighbours were removed. This first examination runs in
+/// parallel, in any order. Then the voxels that could not be removed, and the deeper neighbours of voxels that stay,
+/// are examined one by one.
 /// @param attached  the voxels of the model, and which of them touch extra cells.
 /// @return  a result that does not depend on the number of threads.
 /// @throws Cancelled, OutOfMemory. Cost: about 30 ns per voxel, and 150 ns per voxel that is examined again.

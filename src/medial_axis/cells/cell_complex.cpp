@@ -97,7 +97,7 @@ CellComplex::CellComplex(const VoxelSet& voxels, CellStructure structure, const 
       for (std::int64_t j = 0; j < size[1]; ++j) {
         unsigned around = 0;
         for (std::int64_t i = 0; i < size[0]; ++i) {
-          // Voxels on the upper side of the previous node are on the lower side of this one.
+          // Voxels on the upper side of the previous node are on the lower side of this node.
           around = around >> 1U & 0x55U;
           for (unsigned v = 0; v < 4; ++v) {
             const auto y = static_cast<std::int64_t>(v & 1U);

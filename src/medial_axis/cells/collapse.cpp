@@ -72,8 +72,8 @@ class Collapser {
     run([](Cell, Cell, float) {}, [&](Cell cube, Cell) { offer_faces(cube); });
   }
 
-  /// Removes pairs of a square and an edge, or of an edge and a vertex, with importance zero. remove_rest() then
-  /// removes the others by importance.
+  /// Removes pairs of a square and an edge, or of an edge and a vertex, with importance zero. The function
+  /// remove_rest() then removes all other cells by importance.
   void remove_unimportant() {
     level_ = 0;
     offer_all(0, 1);

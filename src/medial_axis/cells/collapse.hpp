@@ -34,14 +34,14 @@ struct CellDepths {
   std::span<const float> of_extra = {};  ///< for each extra cell
 };
 
-/// Removes pairs of an extra cell and its free face until there are none. The face must also be extra and have
-/// importance zero. The result has the homotopy type of the complex and contains all its voxels.
+/// Removes pairs of an extra cell and its free face until there are none. The free face must also be an extra cell, and
+/// have importance zero. The result has the homotopy type of the complex and contains all its voxels.
 void collapse_extra(CellComplex& complex, const Importance& importance);
 
 /// Collapses a complex until nothing can be removed. Cubes are removed first, then squares, edges and vertices. Faces
-/// of least importance come first; among equal ones, the shallowest. Each step is an elementary collapse. So all
-/// intermediate complexes have the homotopy type of the given one, for any importance and depth (Liu, Chambers,
-/// Letscher, Ju 2010; Chaussard, Couprie 2009).
+/// of least importance come first; among faces of equal importance, the shallowest face comes first. Each step is an
+/// elementary collapse. So all intermediate complexes have the homotopy type of the given one, for any importance and
+/// depth (Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009).
 /// @param importance  degrees. A cell must be at least as important as its cofaces.
 /// @param most_level  degrees; removals of larger importance are not listed.
 /// @throws Cancelled. Cost: about linear in the number of cells, and n log n for n cells of importance above 0.

@@ -5,7 +5,7 @@
 namespace blum::detail {
 namespace {
 
-/// Calls visit(cell) for a cell, its faces and their faces. It may visit a cell more than once.
+/// Calls visit(cell) for a cell, its faces and their faces. A cell may be visited more than once.
 template <class Visit>
 void for_each_in_closure(const CellStructure& structure, Cell cell, const Visit& visit) {
   visit(cell);

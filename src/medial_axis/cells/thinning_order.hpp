@@ -80,8 +80,8 @@ class Line {
 /// Order in which voxels are examined: by depth, then by index.
 class DepthOrder {
  public:
-  /// @param depth  above zero for the voxels to be thinned and for no others. None of these lies in the outermost layer
-  /// of the box.
+  /// @param depth  above zero for the voxels to be thinned and for no others. No voxel to be thinned lies in the
+  /// outermost layer of the box.
   DepthOrder(std::span<const float> depth, const std::array<std::int64_t, 3>& size) : depth_(depth), size_(size) {
     for (std::size_t n = 0; n < 27; ++n) {
       const auto at = static_cast<std::int64_t>(n);
@@ -154,7 +154,8 @@ class DepthOrder {
       if (n == 13) continue;
       const float* other = own + offset_[n];
       const Neighbourhood bit = 1U << n;
-      // Linear indices ascend with n. If two voxels are equally deep, the one with the larger index counts as deeper.
+      // Linear indices ascend with n. If two voxels are equally deep, the voxel with the larger index is treated as
+      // deeper.
       if (n < 13) {
         for (std::size_t i = 1; i + 1 < length; ++i) out[i] |= other[i] > own[i] ? bit : 0;
       } else {

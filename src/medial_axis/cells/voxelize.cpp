@@ -23,9 +23,9 @@ namespace {
 /// one voxel diagonal of it, and the outermost layer stays empty.
 constexpr int margin = 3;
 
-/// Displacement of the grid's middle from the body's middle, in voxels. Without it, planes of symmetry and diagonal
-/// planes would pass through voxel centres. Rounding would then decide on which side of a plane such a voxel lies,
-/// which makes ragged sheets.
+/// Displacement of the grid's middle from the body's middle, in voxels. Without this displacement, planes of symmetry
+/// and diagonal planes would pass through voxel centres. Rounding would then decide on which side of a plane such a
+/// voxel lies, which makes ragged sheets.
 constexpr Vec3d off_middle{0.11, 0.27, 0.37};
 
 using Place = std::array<std::int64_t, 3>;

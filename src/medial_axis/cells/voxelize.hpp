@@ -19,8 +19,8 @@ struct Voxelized {
   BodyReport report;
 };
 
-/// Returns the cellular model of a body: voxels and extra cells. The report lists the places where the model's topology
-/// may differ from the body's.
+/// Returns the cellular model of a body: voxels and extra cells. The report lists the boxes in which the model's
+/// topology may differ from the body's topology.
 /// @param spacing  mesh units.
 /// @param shift  additional displacement of the grid, in voxels, the same along all axes.
 [[nodiscard]] Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift = 0);

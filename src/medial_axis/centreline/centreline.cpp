@@ -238,8 +238,7 @@ void judge_homotopy(Centreline& out) {
                  (out.label_betti[2] > 0 ? ": curves have no voids, so these were filled" : "");
 }
 
-/// Adds each voxel that shares faces with at least five voxels of the set. Such a pit, one voxel wide, is usually
-/// noise.
+/// Adds each voxel that shares faces with at least five voxels of the set. A pit of one voxel is usually noise.
 VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
   VoxelSet out = voxels;
   const auto& size = voxels.size();
@@ -273,8 +272,8 @@ VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
 constexpr float most_shift = 1.0F / 4096;  // voxels: less than the difference of any two distances below 1000 voxels
 
 /// Makes equal depths of the set's voxels differ, by less than most_shift, and sets the depths of other voxels to zero.
-/// Otherwise equally deep voxels would be removed in the order of their indices, from one end of a tube to the other. A
-/// bar of two by two voxels would vanish, because all its voxels are equally deep.
+/// Without this change, equally deep voxels would be removed in the order of their indices, from one end of a tube to
+/// the other. A bar of two by two voxels would vanish, because all its voxels are equally deep.
 void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const auto& size = voxels.size();
   const float scale = most_shift * static_cast<float>(std::min({spacing.x, spacing.y, spacing.z})) / 65536.0F;

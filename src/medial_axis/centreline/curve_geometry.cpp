@@ -74,7 +74,8 @@ class CurveMaker {
   }
 
  private:
-  /// Removes the points that lie in the balls of the junctions at the ends. If all points do, the middle one stays.
+  /// Removes the points that lie in the balls of the junctions at the ends. If all points lie in the balls, the middle
+  /// point stays.
   void leave_balls() {
     std::size_t first = 0;
     std::size_t last = start_.size();
@@ -92,8 +93,8 @@ class CurveMaker {
                                 start_.begin() + static_cast<std::ptrdiff_t>(last));
   }
 
-  /// Returns the index of the point that is `places` points after point i. Indices of closed curves wrap around; those
-  /// of others stop at the ends.
+  /// Returns the index of the point that is `places` points after point i. Indices of closed curves wrap around;
+  /// indices of other curves stop at the ends.
   [[nodiscard]] std::size_t on(std::size_t i, std::ptrdiff_t places) const {
     const auto count = static_cast<std::ptrdiff_t>(points_.size());
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) + places;
@@ -132,7 +133,7 @@ class CurveMaker {
   }
 
   /// Returns the first point in one direction whose distance along the curve is at least `wanted`. If the curve ends
-  /// before, or after a quarter of a closed curve, it returns the last point reached.
+  /// before this distance, or after a quarter of a closed curve, returns the last point reached.
   [[nodiscard]] std::size_t walk(std::size_t i, std::ptrdiff_t step, double wanted) const {
     double way = 0;
     std::size_t at = i;
@@ -181,7 +182,7 @@ class CurveMaker {
   }
 
   /// Returns the first point whose depth is at least `full_depth` times the largest depth near the free end. Points
-  /// before it may lead into a corner of the label.
+  /// before the returned point may lead into a corner of the label.
   [[nodiscard]] std::size_t end_of_tail() const {
     double deepest = 0;
     double way = 0;
@@ -234,7 +235,7 @@ Curve make_curve(const std::vector<Vec3d>& voxels, const std::array<CurveEnd, 2>
 
 // Voxels: sections this close to the ball of a junction also contain other branches.
 constexpr double section_blur = 1.5;
-// Weight of a node's voxel, relative to a branch. It decides if all branches are parallel.
+// Weight of a node's voxel, relative to a branch. The weight determines the result if all branches are parallel.
 constexpr double pull_to_voxel = 1e-3;
 
 /// Point and direction.
@@ -265,7 +266,8 @@ Vec3d meeting_point(const std::vector<Ray>& rays, const Vec3d& start, double rea
   return length > reach ? start + (reach / length) * shift : start + shift;
 }
 
-/// Returns the line through points 3 and 10 of a branch, counted from a node. Sections there contain no other branch.
+/// Returns the line through points 3 and 10 of a branch, counted from a node. Cross-sections between these points
+/// contain no other branch.
 std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
   constexpr std::size_t first = 3;
   constexpr std::size_t last = 10;

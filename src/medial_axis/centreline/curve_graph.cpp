@@ -90,7 +90,8 @@ class Tunnels {
   [[nodiscard]] const std::vector<bool>& kept() const { return is_kept_; }
 
  private:
-  /// Adds the triangles whose longest edge is `edge`. This edge closes a loop of shorter edges.
+  /// Adds the triangles whose longest edge is `edge`. The longest edge of such a triangle closes a loop of shorter
+  /// edges.
   void close(std::uint32_t edge) {
     const Edge& e = edges_[edge];
     for (const Link& one : links_[e.a]) {

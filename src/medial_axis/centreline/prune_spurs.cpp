@@ -9,7 +9,8 @@
 namespace blum::centrelines {
 namespace {
 
-// Voxels by which a spur may extend beyond the ball at its root. One extra voxel on the surface makes a spur that long.
+// Voxels by which a spur may extend beyond the ball at its root. A single extra voxel on the surface makes a spur of
+// this length.
 constexpr double noise = 1.5;
 // Radii of the ball at the root. The corner of a square strut's end is 0.73 radii beyond the ball.
 constexpr double fork_reach = 0.75;
@@ -24,7 +25,8 @@ class Pruner {
   void prune() {
     std::vector<std::uint32_t> order(graph_.nodes.size());
     std::iota(order.begin(), order.end(), 0U);
-    // Nodes with small balls come first. So spurs inside a large ball are removed before its own branches are examined.
+    // Nodes with small balls come first. So spurs inside a large ball are removed before the ball's own branches are
+    // examined.
     std::sort(order.begin(), order.end(),
               [this](std::uint32_t a, std::uint32_t b) { return std::pair(radius(a), a) < std::pair(radius(b), b); });
     for (bool has_changed = true; has_changed;) {

@@ -17,7 +17,7 @@ struct Section {
 
 /// Share of a label at any point: 1 at the centres of its voxels, 0 at the centres of other voxels, trilinear between.
 /// Integrated over a plane across a tube and averaged over all positions of the tube in the grid, the share yields the
-/// section's area. This holds for any interpolation whose weights add up to 1.
+/// section's area. The statement holds for any interpolation whose weights add up to 1.
 class LabelShare {
  public:
   /// @param depth  for each voxel of a box: distance to the closest voxel outside of the label; 0 for voxels outside.

@@ -14,8 +14,9 @@ constexpr int most_steps = 24;
 constexpr double equal_distances = 1e-9;  ///< voxels
 /// Voxels: a wall gets no equation if its distance exceeds that of the closest wall by more than this.
 constexpr double nearly_as_close = 3;
-/// Two equations count as dependent if the squared sine of the angle between their slopes is below
-/// `least_sine_squared`. Three do if the volume spanned by their unit slopes is below `least_volume`.
+/// Two equations are treated as dependent if the squared sine of the angle between their slopes is below
+/// `least_sine_squared`. Three equations are treated as dependent if the volume spanned by their unit slopes is below
+/// `least_volume`.
 constexpr double least_sine_squared = 0.02;
 constexpr double least_volume = 0.1;
 

@@ -25,8 +25,9 @@ class BorderDirections {
   [[nodiscard]] Vec3d of_rim(std::uint32_t v) const;
   /// Returns the direction along the sheet in which its depth decreases: from a vertex towards its two footprints.
   [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const;
-  /// Returns the direction in which a seam or curve ends at a vertex, from the last one or two of its edges. Edges
-  /// count if they have at least `triangles` triangles; for curves `triangles` is 0, and edges must have none.
+  /// Returns the direction in which a seam or curve ends at a vertex, from the last one or two of its edges. Edges are
+  /// used if they have at least `triangles` triangles; for curves, `triangles` is 0, and only edges without triangles
+  /// are used.
   [[nodiscard]] Vec3d of_end(std::uint32_t v, std::size_t triangles) const;
   /// Returns true if the last edge of a curve runs beside another, longer edge of a curve from the same vertex. Such an
   /// edge will be removed, so its end must not slide along the longer edge.

@@ -79,7 +79,7 @@ class Fitter {
   /// Radius at which a sheet that would reach the surface ends, in voxels.
   static constexpr double least_radius = 0.02;
   static constexpr std::array short_radii{0.2, 0.1, 0.05};
-  /// Degrees: two walls count as parallel at this separation angle or more. Parallel walls do not meet nearby.
+  /// Degrees: two walls are treated as parallel at this separation angle or more. Parallel walls do not meet nearby.
   static constexpr double parallel = 175;
   /// Near the rim of a sheet, the separation angle exceeds theta by at most this much, in degrees.
   static constexpr double nearly_theta = 10;
@@ -87,8 +87,8 @@ class Fitter {
   static constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
   static constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
   static constexpr int halvings = 9;
-  /// A border vertex does not move if it is this close to where its border should end, in voxels. The halvings find
-  /// that point with the same accuracy.
+  /// A border vertex does not move if it is this close to where its border should end, in voxels. The halvings find the
+  /// end of the border with the same accuracy.
   static constexpr double settled = 0.001;
   /// Greatest radius of thin parts, in voxels.
   static constexpr double thin_part = 2;
@@ -125,8 +125,8 @@ class Fitter {
 
   // ---- Steps: they move vertices and return the length of the largest move, mesh units ----
 
-  /// Moves vertices of rims and curves that are not shown (see is_shown()) to the middle of a round part. Otherwise
-  /// trim() would remove them.
+  /// Moves vertices of rims and curves that are not shown (see is_shown()) to the middle of a round part. Without this
+  /// move, trim() would remove these vertices.
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
       if (is_shown(lists_.vertices[v], 3)) return std::nullopt;
@@ -158,12 +158,12 @@ class Fitter {
   double place_seams() {
     return move_unsettled(known_.seams, [&](std::uint32_t v) { return balanced(v); });
   }
-  /// Does the same as place_seams() for vertices of curves only.
+  /// Moves vertices of curves as place_seams() does.
   double place_curves() {
     return move([&](std::uint32_t v) { return kinds_[v].curves > 0 ? balanced(v) : std::nullopt; });
   }
-  /// If a sheet bends at an inner vertex, moves the vertex to a nearby seam. Such vertices were put on another sheet,
-  /// beyond the seam.
+  /// If a sheet bends at an inner vertex, moves the vertex to a nearby seam. A vertex at such a bend was put on another
+  /// sheet, beyond the seam.
   double straighten() {
     return move([&](std::uint32_t v) { return is_bent(v) ? straightened(v) : std::nullopt; });
   }
@@ -203,7 +203,7 @@ class Fitter {
   double cut_rims() {
     return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });
   }
-  /// Does the same as cut_rims() for ends of curves only.
+  /// Moves ends of curves as cut_rims() does.
   double cut_ends() {
     return move([&](std::uint32_t v) { return kinds_[v].is_curve_end() ? cut(v) : std::nullopt; });
   }
@@ -387,8 +387,8 @@ class Fitter {
                             foot_of(vertex, 0));
   }
 
-  /// Replaces the second footprint by the point opposite of the first one, if that is equally close and the angle
-  /// becomes larger. Vertices in round parts need this.
+  /// Replaces the second footprint by the point opposite of the first footprint, if this point is equally close and
+  /// gives a larger angle. Vertices in round parts need this replacement.
   void widen(AxisVertex& vertex) const {
     const NearestPoint opposite = opposite_of(vertex);
     const double limit = vertex.radius + 1e-6 * voxel_ + 1e-9 * vertex.radius;
@@ -438,8 +438,8 @@ class Fitter {
     return (walls > 2 ? angle_seen(vertex) : vertex.separation_angle) > target_.theta;
   }
 
-  /// Returns the largest angle between footprints of a vertex, degrees. The point opposite of the first footprint
-  /// counts as a footprint if it is only a little further away (`facets`). Exactly equal distances are rare in round
+  /// Returns the largest angle between footprints of a vertex, degrees. The point opposite of the first footprint is
+  /// treated as a footprint if it is only a little further away (`facets`). Exactly equal distances are rare in round
   /// parts, because these consist of facets.
   [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
     const double own = vertex.separation_angle;
@@ -459,8 +459,8 @@ class Fitter {
     std::vector<Footprint> feet;
     const AxisVertex* sheet = nullptr;  ///< A shown vertex of the sheet.
     double end_radius = least_radius;   ///< Radius at which the path ends, in voxels.
-    /// True if the last point was on the sheet, seam or curve but not shown, or on another sheet: it is past the
-    /// border.
+    /// True if the last point is past the border: it was on the sheet, seam or curve but not shown, or on another
+    /// sheet.
     bool is_past = false;
     bool is_round = false;  ///< True if some point was in the middle of a round or thin part.
   };
@@ -577,7 +577,7 @@ class Fitter {
     return best;
   }
 
-  /// Returns the last shown vertex on the straight way from a shown neighbour to a vertex.
+  /// Returns the last shown vertex on the straight line from a shown neighbour to a vertex.
   [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls, int times = halvings) const {
     const AxisVertex& from = lists_.vertices[neighbour];
     const Vec3d way = lists_.vertices[v].position - from.position;
@@ -647,7 +647,8 @@ class Fitter {
     return mover_.make(std::move(moves));
   }
 
-  /// Does the same as move(), but skips a vertex of a border if an earlier call with the same data did not move it.
+  /// Moves vertices as move() does, but skips a vertex of a border if an earlier call with the same data did not move
+  /// it.
   template <class Where>
   double move_unsettled(Settled& settled, const Where& where) {
     const double furthest = move([&](std::uint32_t v) -> Moved {
@@ -730,7 +731,8 @@ class Fitting {
     }
     has_contracted_ = lists_.vertices.size() != before;
   }
-  /// Returns true if the last call of contract() changed anything. Narrow strips may then be shorter than before.
+  /// Returns true if the last call of contract() changed anything. After contractions, narrow strips may be shorter
+  /// than before.
   [[nodiscard]] bool has_contracted() const { return has_contracted_; }
   /// Removes cells whose angle is at most theta, and cells that lie on other cells, as far as homotopy allows.
   /// @return  true if the number of triangles and edges changed.

@@ -60,8 +60,8 @@ inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertic
   return kinds;
 }
 
-/// Returns the cosine of the angle by which two triangles of a sheet bend at their common side. It is -1 if one
-/// triangle is folded onto the other, and 1 if they form a flat sheet or one has no area.
+/// Returns the cosine of the angle by which two triangles of a sheet bend at their common side. The cosine is -1 if one
+/// triangle is folded onto the other. It is 1 if the triangles form a flat sheet, or if one of them has no area.
 /// @param p, q  corners of the triangles that are not on the common side.
 [[nodiscard]] inline double cosine_of_bend(const Vec3d& from, const Vec3d& to, const Vec3d& p, const Vec3d& q) {
   const Vec3d along = to - from;

@@ -93,8 +93,8 @@ struct ContractionStep {
 inline constexpr std::size_t edges_in_batch = 1024;
 
 /// Reorders a list. The list is cut into `edges_in_batch` consecutive parts, and each batch of the result consists of
-/// one edge of each part. So adjacent edges of the list stay in order, which improves the contractions. They are in
-/// different batches, because steps in one batch must not change each other's surroundings.
+/// one edge of each part. So adjacent edges of the list stay in order, which improves the contractions. Adjacent edges
+/// are in different batches, because steps in one batch must not change each other's surroundings.
 inline std::vector<std::uint32_t> in_strands(const std::vector<std::uint32_t>& list) {
   const std::size_t batches = (list.size() + edges_in_batch - 1) / edges_in_batch;
   std::vector<std::uint32_t> out;

@@ -13,8 +13,8 @@
 namespace blum::detail {
 
 /// Merges curves that leave a vertex side by side. Edges of curves belong to no triangle. The longer edge is changed so
-/// that it begins where the shorter one ends; this is repeated. The homotopy type stays, because the triangle between
-/// both edges lies in the solid.
+/// that it begins where the shorter edge ends. This step is repeated. The homotopy type stays, because the triangle
+/// between both edges lies in the solid.
 /// @param beside  mesh units: greatest distance of the end of the shorter edge from the longer one.
 /// @return  true if any edge was changed.  @throws Cancelled. Cost: near-linear in the edges of curves.
 bool merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context);

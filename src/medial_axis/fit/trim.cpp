@@ -63,7 +63,7 @@ class InsideThinner {
     for (const AxisVertex& vertex : lists_.vertices) input.points.push_back({vertex.position, vertex.radius});
     for (std::size_t e = 0; e < incidence_.edges().size(); ++e) {
       const std::size_t triangles = incidence_.triangles_of_edge()[e].size();
-      // Curves are already in `borders`.
+      // The edges of curves are already in `borders`.
       if (triangles != 0 && triangles != 2) input.borders.push_back(incidence_.edges()[e]);
     }
     input.border_kind.assign(input.borders.size(), 0);
@@ -93,8 +93,8 @@ class InsideThinner {
     });
     return out;
   }
-  /// Adds to the chosen vertices all vertices that are at most `rings` edges away. Short edges, which do not count, are
-  /// followed first, so that each vertex is reached by the least number of edges.
+  /// Adds to the chosen vertices all vertices that are at most `rings` edges away. Short edges are followed first and
+  /// are not counted, so that each vertex is reached by the least number of edges.
   [[nodiscard]] std::vector<std::uint8_t> next_to(std::vector<std::uint8_t> chosen) const {
     const double shortest = no_step * target_.voxel;
     std::vector<std::uint8_t> steps(chosen.size(), rings + 1);
@@ -384,8 +384,8 @@ class Trimmer {
            is_flat(t);
   }
 
-  /// Returns true if the end of a curve lies on a sheet, or if its last edge is short and sticks out of a rim. In the
-  /// second case, the rim is later moved outwards instead.
+  /// Returns true if the end of a curve lies on a sheet, or if its last edge is short and sticks out of a rim. If the
+  /// edge sticks out of a rim, the rim is later moved outwards instead.
   [[nodiscard]] bool is_whisker(std::uint32_t end, std::uint32_t own) const {
     if (is_on_sheet_[end]) return true;
     const std::uint32_t foot = other_end(incidence_.edges()[own], end);

@@ -12,8 +12,8 @@ namespace blum::detail {
 
 /// Removes vertices of sheets like decimate(), but only far from all vertices that fitting may move. Fitting may move
 /// vertices of borders, seams and curves, and those where a sheet bends. It may also move vertices that have one
-/// footprint only, have an angle little above theta, or lie next to the surface. In large parts, most vertices are none
-/// of these. Each step of fitting examines all vertices, so it is faster with fewer of them.
+/// footprint only, have an angle little above theta, or lie next to the surface. In large parts, fitting moves only a
+/// few of the vertices. Each step of fitting examines all vertices, so it is faster with fewer of them.
 /// @param incidence  the incidence of the lists.
 /// @return  largest move of sheets, mesh units; at most a sixteenth of the tolerance of the target.
 /// @throws Cancelled. Cost: near-linear in the number of vertices, about 2 us for each.
@@ -26,8 +26,8 @@ struct CrumbLimits {
 };
 
 /// Removes small sheets that lie on the sheets that they are attached to. Contractions in thin parts of the solid leave
-/// such sheets. Each is collapsed from its free borders. If a part of it would be left, the whole sheet stays. The
-/// homotopy type stays, and the remaining cells do not change.
+/// small sheets on other sheets. Each small sheet is collapsed from its free borders. If a part of the sheet would be
+/// left, the whole sheet stays. The homotopy type stays, and the remaining cells do not change.
 /// @param incidence  the incidence of the lists.
 /// @return  true if any sheet was removed.  @throws Cancelled. Cost: linear in the size of the lists, near-linear in
 /// the number of removed cells.

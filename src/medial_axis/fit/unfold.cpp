@@ -21,7 +21,7 @@
 namespace blum::detail {
 namespace {
 
-/// Greatest number of triangles of a sheet that counts as a crumb.
+/// Greatest number of triangles of a crumb, which is a very small sheet.
 constexpr std::uint32_t most_of_crumb = 8;
 
 /// Returns the edges of sheets that are crumbs, and the edges of curves that lead from a sheet to a free end.
@@ -163,9 +163,9 @@ class ShortEdges {
            lists_.radius(b) < next_to * voxel_;
   }
 
-  /// Returns true if the contraction would move a vertex of a rim to an inner vertex of a seam. That would cut a notch
-  /// into the sheet. Sheets without inner vertices are excepted: such a ribbon in the middle of a round part shall
-  /// become a curve.
+  /// Returns true if the contraction would move a vertex of a rim to an inner vertex of a seam. Such a contraction
+  /// would cut a notch into the sheet. Sheets without inner vertices are excepted: such a ribbon in the middle of a
+  /// round part shall become a curve.
   [[nodiscard]] bool would_notch(std::uint32_t a, std::uint32_t b) const {
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
     const bool is_at_seam =
@@ -260,7 +260,7 @@ class ShortEdges {
 
 using Triangle3 = std::array<std::uint32_t, 3>;
 
-/// A sheet counts as folded at an edge if the cosine of the angle by which it bends there is below this.
+/// A sheet is folded at an edge if the cosine of the angle by which it bends at this edge is below this value.
 constexpr double folded = 0.3;
 constexpr double most_moved = 2;  ///< voxels: longest edge that is contracted
 constexpr int most_rounds = 4;
@@ -409,8 +409,8 @@ class Unfolder {
     return count;
   }
 
-  /// Returns the triangles that contain a vertex, and the triangles with an edge between two neighbours of it. These
-  /// may fold when the vertex moves to one of its neighbours.
+  /// Returns the triangles that contain a vertex, and the triangles with an edge between two neighbours of it. The
+  /// returned triangles may fold when the vertex moves to one of its neighbours.
   [[nodiscard]] std::vector<Triangle3> triangles_around(std::uint32_t v) const {
     std::vector<std::uint32_t> around{v};
     lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {

@@ -37,8 +37,9 @@ struct UnfoldLimits {
 };
 
 /// Contracts edges where two triangles of a sheet are folded onto each other. Moves of vertices cause such folds. At
-/// each fold, it contracts the nearby edge whose contraction removes most folds. Vertices of seams move along seams
-/// only, those of rims along rims only. The homotopy type is kept and edges stay in the solid, as in contract_short().
+/// each fold, it contracts the nearby edge whose contraction removes most folds. Vertices of seams move only along
+/// seams, and vertices of rims only along rims. The homotopy type is kept and edges stay in the solid, as in
+/// contract_short().
 /// @param incidence  the incidence of the lists before the call.
 /// @return  true if any edge was contracted.  @throws Cancelled. Cost: near-linear.
 bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,

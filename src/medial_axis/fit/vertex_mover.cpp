@@ -18,8 +18,8 @@ namespace {
 /// distance is at most `most_of_depth` times the depth of the point.
 constexpr std::array beside{4.0, 2.0, 1.0, 0.5, 0.3};
 constexpr double most_of_depth = 0.4;
-/// Limits for the distances of the footprints of a round part. Each may exceed the smallest distance by this many
-/// voxels, and by this share of the smallest distance.
+/// Limits for the distances of the footprints of a round part. Each distance may exceed the smallest distance by this
+/// many voxels, and by this share of the smallest distance.
 constexpr double equally_far = 0.02;
 constexpr double equally_far_share = 0.05;
 /// A round part must have footprints in at least this number of directions from its middle. The angle between any two

@@ -22,7 +22,7 @@ class AxisCorners {
 
   /// Returns the index of a cell in `piece.cells`.
   [[nodiscard]] std::uint32_t index_of(Cell cell) const;
-  /// Returns the cells that are vertices, ascending. A *vertex place* is an index into this list.
+  /// Returns the cells that are vertices, ascending. A "vertex place" is an index into this list of vertices.
   [[nodiscard]] std::span<const Cell> vertex_cells() const { return vertex_cells_; }
   /// Returns the corners of each cell, as vertex places: the vertex itself, both ends of an edge, or a polygon's
   /// corners in cyclic order.

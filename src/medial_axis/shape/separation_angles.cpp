@@ -57,7 +57,8 @@ constexpr double opposite_step = 0.3;  ///< voxels
 constexpr double wide_angle = 100;
 constexpr double opposite_enough = 175;  ///< degrees: if an angle exceeds this, no larger angle is searched for
 
-/// Voxels in thick parts of the solid. In these, two footprints that are close together never count as two.
+/// Voxels in thick parts of the solid. In thick parts, two footprints that are close together are always treated as
+/// one.
 class ThickParts {
  public:
   ThickParts(const GovernorField& governors, const NoiseFloor& floor, const Context& context) {

@@ -12,22 +12,22 @@ namespace blum::detail {
 /// @param within  voxels, 0 to 32.
 [[nodiscard]] VoxelSet spread(const VoxelSet& from, int within, const Context& context);
 
-/// Limits for two footprints of a point. If they are not met, the footprints count as one, because a grid or the facets
-/// of a mesh can cause them.
+/// Limits for two footprints of a point. Two footprints that do not exceed these limits are treated as one, because a
+/// grid or the facets of a mesh can cause them.
 struct NoiseFloor {
-  double angle = 10;  ///< Degrees. Smaller separation angles count as zero.
+  double angle = 10;  ///< Degrees. Smaller separation angles are treated as zero.
   /// Degrees. At this angle or more, the distance of the footprints does not matter, except by `thin_within`.
   double clear_angle = 45;
   /// Multiples of the longest side of a voxel. Below `clear_angle`, footprints closer together than this count as one.
   double voxels = 2;
   /// At `clear_angle` or more, footprints closer together than `voxels` count as two only in thin parts. A part is thin
-  /// if no voxel within `thin_within` voxels is deeper than `voxels`. So they count as one at the steps by which voxels
-  /// represent a round surface. 0: they count as two everywhere.
+  /// if no voxel within `thin_within` voxels is deeper than `voxels`. So footprints at the steps by which voxels
+  /// represent a round surface are treated as one. With 0, footprints are treated as two everywhere.
   int thin_within = 0;
   /// Degrees: a point off the lines between voxels counts if its angle exceeds the largest one on nearby lines by at
   /// least this much.
   double clearly_more = 5;
-  double lambda = 0;  ///< mesh units: footprints closer together than this count as one at any angle
+  double lambda = 0;  ///< mesh units: footprints closer together than this are treated as one at any angle
 };
 
 /// Computes the separation angle of each cell of a solid, in degrees. It is the largest one found at a point of the

@@ -47,8 +47,8 @@ void add_clip_points(const std::array<Vec3d, 3>& triangle, const Vec3d& outwards
 /// Triangle mesh as a surface; its elements are the triangles. The mesh and the site table must outlive it.
 class MeshSurface final : public Surface {
  public:
-  /// @param bounds_solid  true if the mesh is a closed surface that faces outwards. Otherwise no point counts as
-  /// inside.
+  /// @param bounds_solid  true if the mesh is a closed surface that faces outwards. If false, every point is treated as
+  /// outside.
   MeshSurface(const MeshView& mesh, const SiteTable& sites, bool bounds_solid, const Context& context);
 
   [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;

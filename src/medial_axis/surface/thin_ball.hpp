@@ -18,9 +18,9 @@ struct ThinBall {
   double angle_across = 0;
 };
 
-/// Returns a medial ball of the thin part of the solid that is next to `beyond`, a point outside the solid. First, the
-/// deepest point on the ray from `beyond` through `touched` is found. The ball touches the surface at the closest point
-/// to that deepest point. The largest such ball is found by shrinking (Ma, Bae, Choi, "3D medial axis point
+/// Returns a medial ball of the thin part of the solid that is next to `beyond`, a point outside the solid. The search
+/// starts at the deepest point on the ray from `beyond` through `touched`. The ball touches the surface at the closest
+/// point to that deepest point. The largest such ball is found by shrinking (Ma, Bae, Choi, "3D medial axis point
 /// approximation using nearest neighbors and the normal field", 2012). If there are larger balls next to it, the search
 /// continues with these.
 /// @param touched  closest point of the surface to `beyond`.

@@ -169,8 +169,8 @@ int VoxelSurface::closer_neighbour(const VoxelIndex& voxel, const Vec3d& query, 
   const double next_squared = squared_length(from_next);
   const double cosine_scaled = dot(from_foot, from_next);
   if (cosine_scaled > 0 && cosine_scaled * cosine_scaled >= most_turned * squared * next_squared) return best;
-  // This step turns too far around a corner to stay on the same wall. Only voxels that touch the footprint on the side
-  // of the query are allowed.
+  // This step turns too far around a corner to stay on the same wall. For such a step, only voxels that touch the
+  // footprint on the side of the query are allowed.
   for (std::size_t a = 0; a < 3; ++a) {
     const double low = static_cast<double>(voxel[a]) * grid_.spacing[a];
     axes.allowed[a] = 2U | (query[a] <= low ? 1U : 0U) | (query[a] >= low + grid_.spacing[a] ? 4U : 0U);

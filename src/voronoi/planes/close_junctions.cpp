@@ -199,7 +199,7 @@ class Joiner {
     return out;
   }
 
-  /// Removes edges that a sheet traverses in both directions. Adds what is left, as one sheet for each loop.
+  /// Removes edges that a sheet traverses in both directions. Adds one sheet for each loop of the remaining edges.
   static void add_reduced(const PlaneSheet& sheet, std::vector<PlaneSheet>& out) {
     std::multimap<std::uint32_t, std::uint32_t> next;
     each_edge(sheet.junctions, [&](std::uint32_t a, std::uint32_t b) {
@@ -357,7 +357,7 @@ bool is_division(const PlaneStructure& structure, std::size_t planes) {
   return std::all_of(borders.begin(), borders.end(), is_sphere);
 }
 
-/// Joins parts of a diagram that lie within a tolerance of each other. Junctions within the tolerance become one. A
+/// Joins parts of a diagram that lie within a tolerance of each other. Junctions within the tolerance are merged. A
 /// seam that passes a junction within the tolerance is divided there. Seams with the same ends become one, and sheets
 /// without an area vanish. A junction vanishes if exactly two seams end there, between the same regions.
 ///

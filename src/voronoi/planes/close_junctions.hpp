@@ -16,8 +16,8 @@ struct JoinedJunctions {
 /// a junction. If rounding moves the planes, the junction falls apart into several, with short seams and thin sheets
 /// between them. This function restores the degenerate diagram.
 ///
-/// The result must divide the solid into one region for each plane. If it does not, more distant parts are joined, too:
-/// up to 1e-4 of the size, or up to the tolerance. If that does not help, nothing is joined.
+/// The result must divide the solid into one region for each plane. If the result does not, more distant parts are also
+/// joined: up to 1e-4 of the size, or up to the tolerance. If this does not help, nothing is joined.
 /// @param tolerance  >= 0, mesh units. With 0, or more than 1e-2 of the size, nothing is joined.
 /// @throws Cancelled.
 JoinedJunctions restore_degenerate(PlaneStructure& structure, double tolerance, const Context& context);

@@ -28,18 +28,18 @@ struct ConvexFaces {
   Vec3d origin;
 };
 
-/// Returns the distance that rounding of a mesh's coordinates explains, mesh units. It is 16 times the rounding error
-/// of the largest coordinate. The error is that of the precision whose digits the longest coordinate fills. With 21 to
-/// 24 binary digits it is single precision, with more digits double precision. Shorter coordinates count as not
-/// rounded, and the result is 0.
+/// Returns the distance that rounding of a mesh's coordinates explains, mesh units. The distance is 16 times the
+/// rounding error of the largest coordinate. The error is that of single precision if the longest coordinate has 21 to
+/// 24 binary digits. For more digits, it is that of double precision. Shorter coordinates are treated as not rounded,
+/// and the result is 0.
 [[nodiscard]] double rounding_of_coordinates(const MeshView& mesh);
 
 /// Returns the planes of one component of a mesh, or nothing if it is not a convex polyhedron.
 ///
 /// Faces that share an edge become one plane if they face the same way. Their corners must lie within `flatness` of the
 /// plane of the largest one, or of the plane fitted to all. If faces were joined, their plane is fitted to their
-/// corners; corners of the component may then lie up to twice `flatness` outside planes. Otherwise, everything is
-/// exact.
+/// corners; corners of the component may then lie up to twice `flatness` outside planes. If no faces were joined, the
+/// planes are exact.
 /// @param component  triangles of the component, ascending.
 /// @param flatness   >= 0, mesh units.
 /// @throws Cancelled.

@@ -17,7 +17,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// Parts of a diagram are joined if they are closer than this many times the distance within which faces are.
+/// Parts of a diagram are joined if they are closer than this many times the distance within which faces are joined.
 constexpr double join_factor = 8;
 
 /// Returns the triangles of each component, in the order of their smallest triangles.
@@ -44,7 +44,7 @@ bool is_clearly_reflex(const MeshView& mesh, const PolyhedronSites& sites, doubl
 }
 
 /// Returns a component with its diagram, or nothing if it is not convex. If joined faces do not form a convex
-/// polyhedron, its triangles count as given.
+/// polyhedron, the triangles are used as given.
 std::optional<ConvexBody> convex_body(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                                       std::span<const std::uint32_t> component, double flatness,
                                       const Context& context) {

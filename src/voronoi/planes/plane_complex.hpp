@@ -34,7 +34,7 @@ struct ConvexBodies {
 ///
 /// Parts of a diagram within 8 times `flatness` are joined, at small angles also within 64 times
 /// (restore_degenerate()). The distance grows until the joined diagram has the right Euler number, to at most 1e-4 of
-/// the size. If joined faces do not form a convex polyhedron, the triangles of a convex body count as given.
+/// the size. If joined faces do not form a convex polyhedron, the triangles of a convex body are used as given.
 /// @param flatness  as for convex_faces(); rounding_of_coordinates() if not given.
 /// @throws Cancelled.
 [[nodiscard]] std::optional<ConvexBodies> convex_bodies(const MeshView& mesh, const SiteTable& table,

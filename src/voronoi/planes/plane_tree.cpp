@@ -111,7 +111,7 @@ void PlaneTree::find(const PlacedCorner& point, Found& out) const {
     if (node.second != 0) {
       const std::pair first{least_depth(nodes_[at + 1], point), at + 1};
       const std::pair second{least_depth(nodes_[node.second], point), node.second};
-      // The closer one comes first.
+      // The closer child comes first.
       const bool is_first = first.first <= second.first;
       stack[count++] = is_first ? second : first;
       stack[count++] = is_first ? first : second;

@@ -12,7 +12,7 @@ constexpr std::size_t count = CurveSamples::count;
 /// Places at which interpolants are compared: fine enough that a minimum lies next to the lowest place.
 constexpr std::size_t places = 4 * (count - 1) + 1;
 
-/// A polynomial on the way from 0 to 1, as a sum of Chebyshev polynomials.
+/// A polynomial over the interval from 0 to 1, as a sum of Chebyshev polynomials.
 using Chebyshev = std::array<double, count>;
 
 double angle_of(std::size_t k, std::size_t of) {
@@ -43,7 +43,7 @@ Chebyshev interpolant(const std::array<double, count>& values) {
   return out;
 }
 
-/// Returns the value at a share of the way. The first node is at the cosine 1.
+/// Returns the value at a share of the interval. The first node is at the cosine 1.
 double value(const Chebyshev& c, double share) {
   const double t = 1 - 2 * share;
   double now = 0, next = 0;
@@ -83,7 +83,7 @@ class Gap {
     return std::abs(gap_[count - 1]) + std::abs(gap_[count - 2]) <= share * sites_.tolerance();
   }
 
-  /// Returns the share of the way before which the site is not as close, or its domain is elsewhere.
+  /// Returns the share of the interval before which the site is not as close, or its domain is elsewhere.
   [[nodiscard]] double clear_share() const {
     std::array<double, places> at{};
     for (std::size_t k = 0; k < places; ++k) at[k] = value(gap_, share_of(k));

@@ -11,7 +11,8 @@
 
 namespace blum::voronoi {
 
-/// Points of a curve in planes at right angles to one direction, at Chebyshev nodes of the way along it.
+/// Points of a curve in planes at right angles to one direction, at Chebyshev nodes of an interval along this
+/// direction.
 struct CurveSamples {
   static constexpr std::size_t count = 9;
   double length = 0;  ///< of the way, mesh units
@@ -21,9 +22,9 @@ struct CurveSamples {
   static double share(std::size_t k);
 };
 
-/// A way along a curve.
+/// A path length along a curve.
 struct ClearWay {
-  double length = 0;                       ///< before it, no other site is as close, mesh units
+  double length = 0;                       ///< path length before which no other site is as close, mesh units
   std::optional<TracedSites::Index> site;  ///< may be as close a little further on
 };
 

@@ -107,7 +107,7 @@ double way_to_contact(const TracedSites& sites, const SeamLine& line, TracedSite
     if (site.kind != SiteKind::face) own = square_of(own);
   } else {
     if (site.kind == SiteKind::face) {
-      // Where theirs is below the slack, the other is as close, too.
+      // If the distance from the face is below the slack, the face is as close as the line's own site.
       theirs.a -= slack;
       if (theirs.at(range.from) <= 0) return range.from;
       theirs = square_of(theirs);

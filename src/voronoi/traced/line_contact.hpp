@@ -13,9 +13,9 @@ struct SeamLine {
   Vec3d along;  ///< unit vector
 };
 
-/// Returns a way from the start of a line. Before it, a site is not as close as the line's own site, or the line lies
-/// outside of the site's domain. Distances within twice the tolerance count as equal. Sites that are as close at the
-/// start but not 16 tolerances further count only if they become as close again.
+/// Returns a path length from the start of a line. Before this length, a site is not as close as the line's own site,
+/// or the line lies outside of the site's domain. Distances within twice the tolerance are treated as equal. Sites that
+/// are as close at the start, but not 16 tolerances further, are considered only if they become as close again.
 ///
 /// Along a line, distances from planes and squared distances from lines and points are polynomials of degree 1 and 2.
 /// So are the heights above the sides of domains. (docs/theory/voronoi.md, "Traced solids".)

@@ -152,7 +152,7 @@ SeamGraph::Traced SeamGraph::trace_walk(const Walk& walk) const {
   return out;
 }
 
-/// Follows what is not yet known at the end of a walk: a junction, or a seam.
+/// Follows the junction or seam at the end of a walk, if it is not known yet.
 void SeamGraph::reach(const Vec3d& at, const std::vector<Index>& found) {
   if (is_known(at, found)) return;
   std::vector<LeavingSeam> seams = leaving_seams(sites_, tracer_, at, found);
@@ -228,8 +228,8 @@ void SeamGraph::add_closed(const Vec3d& at, const LeavingSeam& seam, const Trace
   add_curve(std::move(curve));
 }
 
-/// Returns the junction at a place. Where curves touch, places are less precise, so the same sites within a larger
-/// distance are the same junction.
+/// Returns the junction at a position. Where curves touch, positions are less precise, so the same sites within a
+/// larger distance are the same junction.
 std::uint32_t SeamGraph::find_junction(const Vec3d& at, const std::vector<Index>& found) const {
   const double distance = sites_.precision().apart;
   const double larger = std::max(distance, sites_.blur(sites_.distance(found[0], at)));

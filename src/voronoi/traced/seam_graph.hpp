@@ -30,7 +30,8 @@ class SeamGraph {
   /// @param most_work  limit on the work, > 0.
   SeamGraph(const TracedSites& sites, std::uint64_t most_work, const Context& context);
 
-  /// Walks from the middle of each edge of the polyhedron along the walls that end there, and follows what it finds.
+  /// Walks from the middle of each edge of the polyhedron along the walls that end there, and follows the junctions and
+  /// seams that it finds.
   /// @throws TraceProblem, Cancelled.
   void start_at_edges();
   /// A wall beside a curve.
@@ -38,7 +39,7 @@ class SeamGraph {
     std::uint32_t curve = 0;
     std::uint32_t germ = 0;
   };
-  /// Walks from the middles of seams across walls beside them, and follows what it finds.
+  /// Walks from the middles of seams across the adjacent walls, and follows the junctions and seams that it finds.
   /// @throws TraceProblem, Cancelled.
   void cross(std::span<const Side> sides);
 

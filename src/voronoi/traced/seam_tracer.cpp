@@ -34,7 +34,7 @@ constexpr double touching = 512;
 
 }  // namespace
 
-/// How far a curve may be followed before a site can become one of the closest.
+/// Length for which a curve may be followed before a site can become one of the closest sites.
 struct SeamTracer::Room {
   double step = 0;
   Index site = 0;
@@ -316,8 +316,8 @@ std::vector<SeamTracer::Room> SeamTracer::rooms_of_bend(const TracedCurve& curve
   const std::optional<Vec3d> plane = plane_of(curve);
   const auto face = std::find_if(curve.sites.begin(), curve.sites.end(),
                                  [&](Index own) { return sites_[own].kind == SiteKind::face; });
-  // Returns the way before which a linear function stays above 0. A curve in a plane bends within it, so functions
-  // whose slope is at right angles to the plane change evenly. Differences of nearly symmetric sites are such
+  // Returns the path length before which a linear function stays above 0. A curve in a plane bends within it, so
+  // functions whose slope is at right angles to the plane change evenly. Differences of nearly symmetric sites are such
   // functions.
   const auto way_to_zero = [&](double value, const Vec3d& slope) {
     const Vec3d within = plane ? slope - *plane * dot(*plane, slope) : slope;
@@ -408,7 +408,7 @@ std::optional<SeamTracer::Event> SeamTracer::event_with(const TracedCurve& curve
   };
   sites_.for_each_side(site, x, 2 * radius, [&](const DomainSide& side) { consider_side(site, side); });
   for (const Index own : curve.sites) {
-    // The curve passes a side within the way.
+    // The curve passes a side within this path length.
     sites_.for_each_side(own, x, 2 * radius, [&](const DomainSide& side) {
       if (std::abs(side.height(x)) < radius) consider_side(own, side);
     });
@@ -446,7 +446,7 @@ std::optional<std::uint32_t> SeamTracer::vertex_ahead(const TracedCurve& curve, 
         return room.step >= size || std::binary_search(own.begin(), own.end(), v);
       });
     };
-    // Mostly, a site near x shows that the way is not free.
+    // In most cases, a site near x shows that the path is not free.
     if (are_free(near) && are_free(rooms(curve, x, along, radius, size))) return v;
   }
   return std::nullopt;
@@ -718,7 +718,7 @@ struct SeamTracer::Run {
         return std::nullopt;
       }
       step = 0.1 * tracer.sites_.blur(radius);
-      // Only the sites of the start are still as close. Others limit the step as always.
+      // Only the sites of the start are still as close. All other sites limit the step as always.
       const auto other =
           std::find_if(near.begin(), near.end(), [&](const Room& room) { return !contains(from.sites, room.site); });
       if (other != near.end()) step = std::min(step, other->step);

@@ -60,10 +60,10 @@ struct Departure {
 };
 
 /// Follows curves from point to point. A step is as long as the distances of other sites allow: along the curve, no
-/// distance changes faster than the way.
+/// distance changes faster than the path length.
 class SeamTracer {
  public:
-  /// @param work  counts the work. If it is exhausted, traces fail, and nothing is found.
+  /// @param work  counts the work. If the work is exhausted, traces fail, and nothing is found.
   SeamTracer(const TracedSites& sites, TraceWork& work) : sites_(sites), work_(work) {}
 
   /// @param start   a point of the curve.
@@ -107,8 +107,9 @@ class SeamTracer {
   /// Returns a lower bound on how much further a site is than the radius.
   /// @param beyond  sites_.outside(site, x)
   [[nodiscard]] double gap_to(TracedSites::Index site, const Vec3d& x, double beyond, double radius) const;
-  /// Returns the way before which an edge stays further than those of the curve's edges that meet it at a vertex.
-  /// @param way_to_zero  (value, slope): the way before which a linear function stays above 0.
+  /// Returns the path length before which an edge stays further than those of the curve's edges that meet it at a
+  /// vertex.
+  /// @param way_to_zero  (value, slope): the path length before which a linear function stays above 0.
   template <class WayToZero>
   [[nodiscard]] double way_past_edges(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                       const WayToZero& way_to_zero) const;
@@ -120,7 +121,7 @@ class SeamTracer {
   /// Returns true if a site and the sites of a curve have one distance from a point, which lies in their domains.
   [[nodiscard]] bool may_meet(const TracedCurve& curve, TracedSites::Index site, const Vec3d& at) const;
   /// Returns true if a point in the end of an edge's domain is closer to another edge from the same vertex. The
-  /// distances differ by the square of the way, which may be below the tolerance.
+  /// distances differ by the square of the path length, which may be below the tolerance.
   [[nodiscard]] bool is_closer_to_an_edge(const DomainSide& end, const std::vector<TracedSites::Index>& edges,
                                           const Vec3d& at) const;
   [[nodiscard]] std::optional<Event> event_with(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
@@ -135,7 +136,7 @@ class SeamTracer {
   [[nodiscard]] std::optional<Vec3d> meeting_point(const TracedCurve& curve, const Vec3d& x, double radius) const;
   /// Sets the end of a trace that reached the surface: at a vertex if one is close.
   void end_at_border(Trace& trace) const;
-  /// Returns points of a curve on a way along its tangent; nothing if it bends much.
+  /// Returns points of a curve along its tangent; nothing if the curve bends much.
   [[nodiscard]] std::optional<CurveSamples> samples_of(const TracedCurve& curve, const Vec3d& x, const Vec3d& along,
                                                        double length) const;
   /// Returns true if no other site is as close at points of the curve between two of its points.

@@ -78,7 +78,7 @@ SideIndex index_of(const std::vector<DomainSide>& sides) {
   return out;
 }
 
-/// Returns the differences that count as 0.
+/// Returns the differences that are treated as 0.
 /// @param least  tolerance of distances from joined triangles that stay where they are; otherwise 0.
 TracePrecision precision_of(const Box3& box, double least, TracedPlaces places) {
   // Tolerances are relative to the size of the solid. Coordinates far from the origin have larger rounding errors.
@@ -241,7 +241,7 @@ class SiteFinder {
     }
   }
 
-  /// Returns true if a face is the set of points inside all its sides. Large faces do not count.
+  /// Returns true if a face is the set of points inside all its sides. Large faces are not tested.
   [[nodiscard]] bool is_convex(const TracedSite& face) const {
     constexpr std::size_t most_sides = 12;
     if (face.sides.size() > most_sides) return false;
@@ -360,7 +360,7 @@ std::size_t TracedSites::hole_count() const {
   std::size_t holes = 0;
   for (const TracedSite& site : sites_) {
     if (site.kind != SiteKind::face) continue;
-    // Sides of one loop are connected. A face that touches itself at a vertex counts as one loop there.
+    // Sides of one loop are connected. A face that touches itself at a vertex has one loop there.
     detail::UnionFind joined(static_cast<std::uint32_t>(site.sides.size()));
     std::map<std::tuple<double, double, double>, std::uint32_t> first;
     std::size_t loops = site.sides.size();

@@ -62,13 +62,14 @@ struct BorderEdge {
   [[nodiscard]] bool is_reflex() const { return own != 0xffffffff; }
 };
 
-/// How places that are nearly the same are treated.
+/// Treatment of junctions and seams that are nearly at the same position.
 enum class TracedPlaces : std::uint8_t {
-  merged,   ///< Junctions and seams closer than the tolerance are one. Symmetric solids have such ones.
-  separate  ///< Only rounding of numbers counts as 0. Vertices move so that joined faces are flat.
+  merged,   ///< Junctions and seams closer than the tolerance are merged. Symmetric solids have such junctions and
+            ///< seams.
+  separate  ///< Only rounding of numbers is treated as 0. Vertices move so that joined faces are flat.
 };
 
-/// Differences that count as 0.
+/// Differences that are treated as 0.
 struct TracePrecision {
   double distance = 0;   ///< mesh units
   double apart = 0;      ///< of two junctions, mesh units
@@ -105,7 +106,7 @@ class TracedSites {
   [[nodiscard]] const Vec3d& origin() const { return origin_; }
   /// Returns the diagonal of the box around the solid.
   [[nodiscard]] double extent() const { return extent_; }
-  /// Distances below this value, in mesh units, count as 0.
+  /// Distances below this value, in mesh units, are treated as 0.
   [[nodiscard]] double tolerance() const { return precision_.distance; }
   [[nodiscard]] const TracePrecision& precision() const { return precision_; }
 
@@ -156,7 +157,7 @@ class TracedSites {
                                   double tolerance) const;
 
   /// Returns the side of a domain between a face and its edge, between an edge and its end, or between two edges on one
-  /// line. It points towards the domain of the smaller site, or of `second`. Null for other sites.
+  /// line. It points towards the domain of the smaller site, or of `second`. Returns null for all other pairs of sites.
   [[nodiscard]] const DomainSide* side_between(Index first, Index second) const;
 
   /// Plane between the regions of two edges with a common vertex, in which both domains overlap.
@@ -165,8 +166,8 @@ class TracedSites {
     Vec3d point;
     [[nodiscard]] double height(const Vec3d& x) const { return dot(normal, x - point); }
   };
-  /// Returns nothing for other sites. The plane shows which edge is closer where distances differ by less than
-  /// rounding. Near it, they differ by the height times the way along the edge, divided by the radius.
+  /// Returns nothing for all other pairs of sites. The plane shows which edge is closer where distances differ by less
+  /// than rounding. Near it, they differ by the height times the way along the edge, divided by the radius.
   [[nodiscard]] std::optional<EdgePlane> plane_between_edges(Index first, Index second) const;
 
   /// The closest sites of a point.

@@ -74,8 +74,8 @@ enum class TraceEffort : std::uint8_t {
 /// Returns a limit on the work of a diagram: about ten times the largest work per site that diagrams need.
 [[nodiscard]] std::uint64_t usual_work(const TracedSites& sites);
 
-/// Returns a limit on the work of all ways to trace a diagram, so that failing traces take about as long as cubes at
-/// most. The limit is 0 for scans and fine tessellations whose traces would hardly succeed below it.
+/// Returns a limit on the work of all attempts to trace a diagram, so that failing traces take at most about as long as
+/// cubes. The limit is 0 for scans and fine tessellations whose traces would hardly succeed below it.
 /// @param triangles  of the mesh.
 [[nodiscard]] std::uint64_t default_work(const TracedSites& sites, std::size_t triangles);
 
