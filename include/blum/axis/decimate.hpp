@@ -25,16 +25,16 @@ struct DecimatedAxis {
 /// shape.
 ///
 /// Remaining vertices keep their positions and columns, and so their exact radii and footprints. Sheets move by at most
-/// 0.8 of the tolerance. Rims, seams and curves move by at most 0.4 times 0.8 of the tolerance, which is 0.32 of the
-/// tolerance. Junctions, ends of curves, corners where seams meet rims, and the order of sheets are kept. No two sheets
-/// become one, and no two pairs of patches on their sides. The homotopy type is preserved: vertices are removed by edge
+/// 0.8 of the tolerance. Rims, seams and curves move by at most 0.32 of the tolerance. Junctions, ends of curves,
+/// corners where seams meet rims, and the order of sheets are kept. Different sheets stay separate. Parts of a sheet
+/// between different pairs of patches also stay separate. The homotopy type is preserved: vertices are removed by edge
 /// contractions under the link condition (see docs/theory/medial-axis.md).
 ///
-/// In thin parts, the tolerance may exceed the radius. So the total move of a sheet, seam,
-/// rim or curve is also limited to 0.15 times the largest radius around it.
+/// In thin parts, the tolerance may exceed the radius. So the total displacement of a sheet, seam, rim or curve is also
+/// limited to 0.15 times the largest radius around it.
 ///
-/// In each step, a sheet moves beyond its former shape by at most half of the smallest radius nearby. Moves of up to a
-/// millionth of the tolerance are always allowed. So the sheet stays in the solid, unless the solid between vertices is
+/// In each step, a sheet moves beyond its former shape by at most half of the smallest radius nearby. A move by a
+/// millionth of the tolerance is always allowed. So the sheet stays in the solid, unless the solid between vertices is
 /// thinner than the radii of the vertices indicate. The function certify() checks whether the axis stays in the solid.
 /// @param axis       with the columns of MedialView, from MedialAxis::simplify() or prune_sheets(). Axes of all angles
 ///                   (MedialAxis::nested) are not accepted, because their edges overlap.

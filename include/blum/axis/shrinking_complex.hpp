@@ -65,7 +65,7 @@ class ShrinkingComplex {
   void add_edge(const std::array<std::uint32_t, 2>& ends);
 
   /// Returns the remaining part of a complex, with its columns.
-  /// @param whole  complex from which this object was made. It may lack the last edges of this object.
+  /// @param whole  complex from which this object was made. The complex may lack edges that were added later.
   [[nodiscard]] Complex rest_of(const Complex& whole) const;
 
  private:

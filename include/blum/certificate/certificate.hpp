@@ -118,8 +118,8 @@ struct Description<GeometryCheck> {
 /// If a point of the solid is at distance r from the surface, the ball of radius r around it lies in the solid. The
 /// check covers each edge with such balls, so every point of the edge is checked.
 ///
-/// An edge may cut a corner of its body if the edge can be pushed into the solid. Such an edge may leave the body by at
-/// most 1/64 of the diagonal of the body's box. For images, the limit is half the diagonal of a voxel if that is
+/// An edge may cut a corner of its body if the edge can be pushed into the solid. A pushed edge may leave the body by
+/// at most 1/64 of the diagonal of the body's box. For images, this limit is half the diagonal of a voxel if that is
 /// larger. To push an edge, the check moves the edge's outermost point into the solid, through the closest point of the
 /// surface. The two halves of the edge are then treated in the same way, until the whole edge lies in the solid. At
 /// most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is. If the solid consists
@@ -131,12 +131,12 @@ struct EdgeCheck {
   std::size_t outside = 0;  ///< Edges that leave their body and cannot be pushed into it.
   /// Lower bound of the largest distance of the edges in `outside` from the body, mesh units.
   double outside_by = 0;
-  Vec3d where;             ///< Point at the distance `outside_by`, mesh units.
-  std::size_t across = 0;  ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
-  Vec3d across_at;         ///< Position of the first crossing of a gap, mesh units.
-  std::size_t undecided = 0;
-  double tolerance = 0;  ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
-  bool holds = false;    ///< True if no edge is outside or crosses a gap.
+  Vec3d where;                ///< Point at the distance `outside_by`, mesh units.
+  std::size_t across = 0;     ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
+  Vec3d across_at;            ///< Position of the first crossing of a gap, mesh units.
+  std::size_t undecided = 0;  ///< Edges that possibly cross a gap. If any exist, only Betti numbers are proven.
+  double tolerance = 0;       ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
+  bool holds = false;         ///< True if no edge is outside or crosses a gap.
 };
 
 template <>
@@ -249,82 +249,82 @@ struct Description<BallUnionCheck> {
 
 /// Result of the check that an axis lies in the middle of its solid, and that no part of the axis is missing.
 ///
-/// Judged cells are triangles and edges of curves. Their separation angle, as stored in the axis, is above theta. If
-/// the solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All
-/// other cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
+/// Judged cells are the triangles, and the edges of curves, whose separation angle in the axis is above theta. If the
+/// solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All other
+/// cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
 ///
 /// The check uses sample points, which are the same in every run. There are at most 8,192 points of sheets, 2,048
 /// points of curves, 4,096 vertices and 16,384 points of the solid. All small sheets together have up to 4,096 further
 /// points. All bodies together have up to 32,768 further points.
 ///
 /// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If this side is
-/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no side, the unit is 1/32
-/// of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
-/// diagonal of a voxel. The axis also reports its deviation (DecimatedAxis::deviation), which counts as at most 1/64 of
-/// the diagonal of the solid.
+/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no voxel side, the unit is
+/// 1/32 of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
+/// diagonal of a voxel. The deviation that the axis reports (DecimatedAxis::deviation) is lowered to 1/64 of the
+/// diagonal of the solid if it is larger.
 ///
-/// The first rule judges how far the axis is from the middle. At a point of the axis, the ball that touches the closest
-/// wall is grown until it touches another wall. The distance of the point from the middle is its distance from the
-/// bisector of the two walls. Two walls count as one wall if the angle between their touching points, at the ball's
-/// centre, is below 10 degrees (images: 20).
+/// The first rule judges how far the axis is from the middle between two walls (parts of the surface). At a point of
+/// the axis, the ball that touches the closest wall is grown until it touches another wall. The distance of the point
+/// from the middle is its distance from the bisector of the two walls. Touching points belong to one wall if the angle
+/// between them, seen from the ball's centre, is below 10 degrees (images: 20).
 ///
 /// Three limits apply to the distances of the points from the middle. For at least 95 % of the points, the distance
-/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 %, it must also be at most a quarter
-/// of the radius of the point's ball. For at least half, it must be at most an eighth of this radius, and at most
-/// `close_allowance`. This last length is a third of a voxel, or the deviation plus a twelfth of a voxel if that is
-/// more.
+/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 % of the points, the distance must
+/// also be at most a quarter of the radius of the point's ball. For half of the points, the distance must be at most an
+/// eighth of this radius, and at most `close_allowance`. The length `close_allowance` is a third of a voxel, or the
+/// deviation plus a twelfth of a voxel if that is more.
 ///
 /// Two rules raise the limits that depend on the radius. If a corner of the point's cell has a larger radius than the
-/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So these limits are at least a tenth
-/// of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the limits
-/// that depend on the radius do not apply.
+/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So the radius limits are at least a
+/// tenth of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the
+/// limits that depend on the radius do not apply.
 ///
 /// Unless the solid consists of voxels, sheets are also judged one by one. At most half of the points of a sheet may be
 /// further from the middle than the allowance. All sheets with at least 12 sample points are judged. Sheets with fewer
-/// sample points are judged only if their area is at least 4 square voxels. The 341 largest of these sheets get 12
-/// further points each; smaller ones are not judged.
+/// sample points are judged only if their area is at least 4 square voxels. The 341 largest sheets with few sample
+/// points get 12 further points each; smaller sheets are not judged.
 ///
 /// The second rule judges vertices with one footprint. Vertices of judged cells should have two footprints, but some
 /// have only one, at ends of sheets and in thin walls. A vertex with one footprint must lie within the allowance from
 /// the middle, and within a quarter of its ball's radius from the middle. A vertex is exempt if one of its judged cells
-/// has a corner with a radius below one voxel. This limit may be exceeded by at most a tenth of the vertices of judged
-/// cells, or by 16 vertices if that is more.
+/// has a corner with a radius below one voxel. At most a tenth of the vertices of judged cells, or 16 vertices if that
+/// is more, may exceed this limit.
 ///
-/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of such a cell,
-/// and the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that
-/// is allowed between the axis and the centre of a ball with the vertex's radius (see below). The distance of the
-/// vertex from the middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above
-/// 256 square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
+/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angles of this cell and
+/// of its other corners are above theta and above 20 degrees (images: 40). Let d be the distance that is allowed
+/// between the axis and the centre of a ball with the vertex's radius (see below). The distance of the vertex from the
+/// middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above 256 square
+/// voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
 ///
 /// The third rule finds missing parts of the axis. Balls are grown from random points of the solid. In each body,
-/// further balls are grown from points next to the body's surface. If the solid consists of voxels, these points lie in
-/// the body's box instead. If theta is unknown, missing parts are not checked.
+/// further balls are grown from points next to the body's surface. If the solid consists of voxels, the further balls
+/// are grown from points in the body's box instead. If theta is unknown, missing parts are not checked.
 ///
-/// A ball counts if it touches two walls at points at least lambda apart, and the angle between these points, at its
-/// centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is
-/// less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the two
-/// points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls with
-/// such close points never count.
+/// A ball counts if it touches two walls at points at least lambda apart, and the angle between these points, seen from
+/// its centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that
+/// is less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the
+/// two points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls
+/// whose points are closer than this never count.
 ///
 /// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
 /// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
 /// voxels if that is more.
 ///
-/// This condition must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %). The further
+/// The limit must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %). The further
 /// balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more further balls
-/// that count, the condition must hold for half of them. If it fails for more than 10 % of these balls in all bodies
-/// together, it must hold for 90 % of them in each body. In any case, the condition may fail for three balls.
+/// that count, the limit must hold for half of them. If more than 10 % of the further balls exceed the limit, it must
+/// hold for 90 % of them in each body. Three balls may always exceed the limit.
 ///
 /// If borders were fitted, parts thinner than a voxel are also judged by their own radius. A ball counts if its radius
 /// is at most two thirds of a voxel, and its angle at least 150 degrees and `sought_angle`. No ball beside it may be
-/// larger by more than 5 %. The axis must come within three radii of its centre, except for one ball. So a missing end
-/// of a wire is found if it is longer than that. Such balls are also grown from vertices of the surface.
+/// larger by more than 5 %. For all these balls except one, the axis must come within three radii of the centre. So the
+/// rule finds missing ends of wires. These balls are also grown from vertices of the surface.
 ///
-/// In polyhedra, single sheets must not be missing either. Walls are flat or smooth parts of the surface. Two walls
-/// count if more than 8 balls touch both. More than 6 of the balls must have centres that are 2 voxels apart from each
-/// other. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180 degrees.
-/// Their radius is above `missing_allowance`. Half of them must be next to a cell of the axis between these walls
-/// (docs/theory/certificate.md).
+/// In polyhedra, the rule also finds single missing sheets. Here, walls are flat or smooth parts of the surface. A pair
+/// of walls is judged if more than 8 balls touch both walls, and more than 6 of these balls have centres that are 2
+/// voxels apart. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180
+/// degrees if that is less. The radius of these balls is above `missing_allowance`. Half of the balls must be next to a
+/// cell of the axis between the two walls (docs/theory/certificate.md).
 ///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
 /// but not judged.
@@ -592,10 +592,10 @@ struct Description<AngleCheck> {
 };
 
 /// Result of the check of sheets against the walls of a polyhedron (docs/theory/certificate.md). A part of a sheet is
-/// large if it has 4 square voxels and 8 triangles or more. Edges that bend by less than 45 degrees, or do not touch a
-/// seam, join triangles to parts. Large parts of a sheet must not lie between different pairs of walls. At most 5 % of
-/// `vertices` may be `wrong`, or 3 if that is more. Files of Voronoi diagrams may have columns of patches. Then each
-/// pair of sites, and each sheet of patches, must have one pair of patches.
+/// large if it has at least 4 square voxels and 8 triangles. Two triangles belong to one part if the edge between them
+/// bends by less than 45 degrees, or does not touch a seam. All large parts of a sheet must lie between the same pair
+/// of walls. At most 5 % of `vertices`, or 3 vertices if that is more, may be `wrong`. In files with columns of
+/// patches, each pair of sites, and each sheet of patches, must have one pair of patches.
 struct SheetCheck {
   std::size_t sheets = 0;     ///< Sheets with two large parts that are connected only through edges next to seams.
   std::size_t two_pairs = 0;  ///< Sheets among `sheets` between two pairs of walls; the largest accepted number is 0.
@@ -640,8 +640,8 @@ struct CertificateOptions {
   std::optional<double> lambda = {};     ///< Mesh units.
   std::optional<double> spacing = {};    ///< Side of a voxel, mesh units.
   std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units.
-  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). Then MedialCheck also judges parts
-  /// thinner than a voxel, by the radius there. Otherwise, borders may end up to two voxels early.
+  /// True if borders were fitted to the surface (MedialAxis::fitted(), lean()). If true, MedialCheck judges parts
+  /// thinner than a voxel by their radius. If false, the axis may stop two voxels short of its exact border.
   bool fitted = false;
 };
 
@@ -676,7 +676,7 @@ struct Certificate {
   BettiNumbers solid{};         ///< Sum over all bodies, computed from the solid's boundary or voxels.
   BettiNumbers axis{};          ///< Betti numbers of the complex, by homology().
   std::optional<double> voxel;  ///< Shortest side of a voxel, mesh units; unset unless the solid consists of voxels.
-  /// One check for each body; all must agree. Without CertificateOptions::positions, one check for the whole solid.
+  /// One check for each body. Without CertificateOptions::positions, one check for the whole solid.
   std::vector<BodyCheck> bodies;
   bool topology_holds = false;
   GeometryCheck geometry;

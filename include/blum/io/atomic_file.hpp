@@ -30,7 +30,7 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
 
   /// Appends `size` bytes.
-  /// @throws FileError if the system refuses (disk full, for example), or after finish() or commit().
+  /// @throws FileError if the system reports an error, such as a full disk, or after finish() or commit().
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 

@@ -28,7 +28,7 @@ class ColorScale {
   [[nodiscard]] static ColorScale sequential(double lowest, double highest);
   /// Returns a scale that is light at zero, deep orange at `lowest` and deep blue at `highest`. Values below and above
   /// zero are scaled separately, so that small depths are visible beside large distances. The two scales differ by at
-  /// most a factor of four, so a much shorter side does not reach its deepest colour.
+  /// most a factor of four, so the side with a much smaller range has no deep colours.
   [[nodiscard]] static ColorScale diverging(double lowest, double highest);
 
   /// Returns the position of a value on the scale: 0 to 1, or -1 to 1 if the scale is diverging. NaN stays NaN.

@@ -54,31 +54,31 @@ inline constexpr std::size_t max_file_name = 256;
 ///           are lines, triangles are polys. Columns of vertices are point data. Columns of edges and triangles are
 ///           cell data. A column of edges and a column of triangles are in the same array if they have the same name,
 ///           type and number of components. Cells without the column have a fill value: -1 in columns of whole numbers,
-///           NaN in others. If the vertices have a column of this name, a vert has the value of its vertex in that
-///           column. The field data `edge_columns` and `triangle_columns` are JSON texts that list the array of each
-///           column. The field data `metadata` is a JSON object.
+///           NaN in others. If a column of vertices has the same name, a vert has its vertex's value in this column.
+///           The field data `edge_columns` and `triangle_columns` are JSON texts that list the array of each column.
+///           The field data `metadata` is a JSON object.
 ///   `.ply`  Binary, little endian: vertices (coordinates in double precision) and triangles with their columns, then
 ///           edges. Columns of edges are an element `edge_attributes`, in the order of the edges. A column of three
 ///           components has the properties NAME_x, NAME_y, NAME_z. A column of two, or more than three, components has
-///           NAME_0, NAME_1, ... Comments `blum_column ELEMENT PROPERTY COMPONENTS NAME` describe columns that would be
-///           read differently by these rules. A floating-point column `radius` is repeated as `quality` (float), which
+///           NAME_0, NAME_1, ... Comments `blum_column ELEMENT PROPERTY COMPONENTS NAME` describe columns that a reader
+///           could not restore from the names. A floating-point column `radius` is repeated as `quality` (float), which
 ///           MeshLab uses for colours. Metadata are comments `blum {"key": "text"}`.
 ///   `.obj`  Lines `v` and `f`, `l` for each edge of the complex, and `p` for vertices that belong to no edge and no
-///           triangle. There are no columns and no metadata.
+///           triangle. Files of .obj hold no columns and no metadata.
 ///   `.npz`  `vertices` [n, 3] float64, `edges` [n, 2] and `triangles` [n, 3] int32. Columns of edges, triangles and
 ///           vertices are `edge_NAME`, `triangle_NAME` and NAME, [n] or [n, components]. A column of vertices is
-///           `vertex_NAME` if NAME alone would be read differently. `metadata` is a JSON object. A further complex has
-///           the same arrays; their names begin with the name of the complex and `_`. It has no metadata.
+///           `vertex_NAME` if NAME alone would have another meaning. `metadata` is a JSON object. A further complex has
+///           the same arrays, with its name and `_` as a prefix, but no metadata.
 ///   `.glb`  Binary glTF (see write_gltf()): triangles, edges as lines, and vertices that belong to no edge and no
-///           triangle as points. A column of vertices is the attribute `_NAME`. The name is in upper case, unless two
-///           names would then be the same. Metadata are extras. All numbers are in single precision. The format cannot
-///           hold columns of edges and triangles, columns of more than four components, and whole numbers beyond 2^24.
+///           triangle as points. A column of vertices is the attribute `_NAME`. NAME is in upper case, unless two names
+///           would then be the same. Metadata are extras. All numbers are in single precision. The format cannot hold
+///           columns of edges and triangles, columns of more than four components, and whole numbers beyond 2^24.
 ///
 /// Indices count from 0 (in .obj from 1). A file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension.
 /// @throws InvalidOption, in formats with columns, if a column's name has other characters than letters, digits, `_`,
-/// `-` and `.`, or more than max_file_name characters. It is also thrown for more columns or components than
-/// max_file_columns. In .ply, it is also thrown for more than 100,000 numbers for each vertex, edge or triangle.
+/// `-` and `.`, or more than max_file_name characters. Also thrown for more columns or components than
+/// max_file_columns, and in .ply for more than 100,000 numbers for each vertex, edge or triangle.
 /// @throws InvalidOption for metadata with an empty or repeated key, and for bad names in options.further.
 /// @throws InvalidOption for content that the format cannot hold, unless allow_loss is true. Further complexes are
 /// rejected in all formats except .npz, even if allow_loss is true.

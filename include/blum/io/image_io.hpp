@@ -25,21 +25,21 @@ struct ImageFile {
   std::optional<ImageFormat> format = {};  ///< format of the file; readers always set it
 };
 
-/// Reads a 3D image of scalars. Values keep the type that they have in the file, with the exceptions below. Spacing,
-/// origin and direction are those of the file, in the world axes and units of the file. The name of the unit is not
-/// read (xyzt_units in NIfTI, "units" and "space units" in NRRD). A 2D image becomes an image with one layer.
+/// Reads a 3D image of scalars. Values keep the type that they have in the file, unless the list below says otherwise.
+/// Spacing, origin and direction are those of the file, in the world axes and units of the file. The name of the unit
+/// is not read (xyzt_units in NIfTI, "units" and "space units" in NRRD). A 2D image becomes an image with one layer.
 ///
 ///   `.nrrd`, `.nhdr`  NRRD 1 to 5 in either byte order, with raw, gzip or text data. The data are in the same file or
-///                     in one other file, also with line skip and byte skip. The geometry is given by "space
+///                     in one other file. Line skip and byte skip are supported. The geometry is given by "space
 ///                     directions", "space origin" and "space" (VoxelImage::space), or else by "spacings" and "axis
-///                     mins" and "axis maxs". NaN means unknown: a spacing then becomes 1, and an origin 0.
+///                     mins" and "axis maxs". NaN means unknown: an unknown spacing becomes 1, and an unknown origin 0.
 ///                     Axes without a direction ("none"), and axes whose kind counts components (vector, colour,
 ///                     matrix), must have one entry, and are removed. If more than three axes remain, axes with one
-///                     entry are removed, too. Other kinds of axes are treated like spatial axes.
+///                     entry are removed, too. Axes of all other kinds are treated like spatial axes.
 ///   `.nii`, `.hdr` with `.img`, each also with `.gz`
 ///                     NIfTI-1 and 2, in either byte order. The geometry is given by the sform if it is set, else by
 ///                     the qform if that is set, else by the spacings alone. If the sform has shear, the qform is used
-///                     instead. Without a qform, this is an error. read_image_file() warns if sform and qform (or the
+///                     instead. Shear without a qform is an error. read_image_file() warns if sform and qform (or the
 ///                     spacings) place a corner more than 0.1 voxels apart. If either form is used, the space is
 ///                     right-anterior-superior. If the file has a scale (scl_slope, scl_inter), values become double. A
 ///                     slope of 0, NaN or infinity is ignored. Sizes along dimensions beyond the third must be 1.
@@ -49,16 +49,16 @@ struct ImageFile {
 ///                     bytes are compressed by zlib; in Version 2, they are not. The spacing is 1, and the origin 0.
 ///                     The Center fields are ignored, because programs that write them disagree on their meaning.
 ///
-/// Direction vectors that are perpendicular unit vectors up to rounding (1e-4) are replaced by the nearest exact ones.
-/// Other direction vectors are an error. Bytes after the last value are ignored, except for checksums, which must
-/// match.
+/// Direction vectors that are perpendicular unit vectors up to rounding (1e-4) are replaced by the nearest exact unit
+/// vectors. Other direction vectors are an error. Bytes after the last value are ignored, except for checksums, which
+/// must match.
 /// @throws FileError if the file cannot be read.
 /// @throws FormatError with the file and the reason, if the content is wrong or not supported, or if the image has more
 /// than 2^31 - 1 voxels.
 /// @throws InvalidOption for another extension.
 /// @throws OutOfMemory. Sizes in a header are compared with the length of the file before memory is allocated.
-/// Cost: O(voxels) time. It needs no memory in addition to the image, except for values that are text, scaled or in
-/// Fortran order.
+/// Cost: O(voxels) time. Memory in addition to the image is needed only for values that are text, scaled or in Fortran
+/// order.
 [[nodiscard]] VoxelImage read_image(const std::filesystem::path& path);
 
 /// Reads an image from memory. In messages, `name` is used as the name of the file. An image whose data are in another

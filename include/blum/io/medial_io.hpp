@@ -61,9 +61,9 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
                   const Context& context = {});
 
 /// Writes a medial axis with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files can hold the
-/// axes of all angles. They are the further complex `nested`, with additional columns (float32). For a vertex or
-/// triangle, `until` is the theta at which it vanishes (inf: never). For an edge, `from` and `until` are the values of
-/// theta between which it has its role. `nested_theta` in the metadata is the least theta.
+/// axes of all angles. The file stores these axes as the further complex `nested`, with more columns (float32). For a
+/// vertex or triangle, `until` is the theta at which the cell vanishes (inf: never). For an edge, `from` and `until`
+/// are the values of theta between which the edge has its role. `nested_theta` in the metadata is the least theta.
 /// @throws InvalidOption for other formats.
 /// @param least_theta  MedialAxis::least_theta(), degrees.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
@@ -81,7 +81,7 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// @throws FormatError with the file and the reason.
 /// @throws InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
-/// Makes a medial axis from the content of a file that read_complex() has read. `name` is its name, for messages.
+/// Makes a medial axis from the content of a file that read_complex() has read. Messages call the file `name`.
 /// @throws FormatError with the name and the reason.
 [[nodiscard]] MedialFile read_medial(const ComplexFile& file, const std::string& name);
 /// Reads a medial axis from memory. In messages, `name` is used as the name of the file.

@@ -45,8 +45,8 @@ struct MeshFile {
 /// Reads a mesh; the extension selects the format. Coordinates keep double precision. Vertices keep their order.
 /// Vertices that no triangle, segment or point uses are kept, too.
 ///
-///   `OBJ`  The statements `v`, `f`, `l` (segments) and `p` (points) are read; all others are ignored. Indices are `i`,
-///          `i/t`, `i//n` or `i/t/n`, also negative. A backslash at the end of a line continues the line.
+///   `OBJ`  The statements `v`, `f`, `l` (segments) and `p` (points) are read; other statements are ignored. Indices
+///          are `i`, `i/t`, `i//n` or `i/t/n`, also negative. A backslash at the end of a line continues the line.
 ///   `OFF`  Text with any of the prefixes ST, C, N. On a line, text after the coordinates or corners is ignored. Binary
 ///          files and 4- or n-dimensional files are rejected.
 ///   `STL`  Text or binary, distinguished by size and content, not by the word "solid". Normals and colours are
@@ -56,17 +56,17 @@ struct MeshFile {
 ///          ignored.
 ///
 /// A file with vertices and nothing else is a point cloud: every vertex is in `points`. Polygons are cut into
-/// triangles. A strictly convex polygon becomes a fan of triangles at its first corner. Other polygons are cut by ear
-/// clipping, projected along the coordinate axis nearest to their mean normal. The triangles are correct for every
-/// simple planar polygon, even if bridges join holes to its outline. If a polygon crosses itself, has no area, or needs
-/// too many steps, it becomes a fan. The limit is 500 steps per corner plus 2e8 steps per file. Triangles with the same
-/// vertex at two corners are kept, unless welding is requested.
+/// triangles. A strictly convex polygon becomes a fan of triangles at its first corner. Other polygons are projected
+/// along the coordinate axis nearest to their mean normal, and cut by ear clipping. Ear clipping is correct for every
+/// simple planar polygon, even if bridges join holes to the polygon's outline. If a polygon crosses itself, has no
+/// area, or needs too many steps, it becomes a fan. The limit of steps is 500 per corner plus 2e8 per file. Triangles
+/// with the same vertex at two corners are kept, unless welding is requested.
 ///
 /// Cost: O(file size) time and memory; the whole file is held in memory while it is read.
 /// @throws FileError if the file cannot be read, or its extension is not known.
-/// @throws FormatError with the file and the line (text) or byte (binary). It is thrown for broken or truncated
-/// content, counts that exceed the size of the file, and indices out of range. It is also thrown for faces with fewer
-/// than 3 corners, and for coordinates that are not finite.
+/// @throws FormatError with the file and the line (text) or byte (binary). FormatError is thrown for broken or
+/// truncated content, counts that exceed the size of the file, and indices out of range. FormatError is also thrown for
+/// faces with fewer than 3 corners, and for coordinates that are not finite.
 /// @throws InvalidOption for a weld tolerance that is negative or not finite, or a format that is not read.
 /// @throws OutOfMemory.
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});

@@ -148,7 +148,7 @@ struct Description<MedialAxisReport> {
 };
 
 /// Medial axis of a solid for all angles theta at once. The cells of the solid collapse to a complex of polygons, edges
-/// and vertices. This class stores that complex, and the order in which it collapses further while theta rises.
+/// and vertices. MedialAxis stores this complex, and the order in which it collapses further for larger theta.
 class MedialAxis {
  public:
   MedialAxis(MedialAxis&&) noexcept;
@@ -215,25 +215,25 @@ class MedialAxis {
 /// Computes the medial axis of a solid.
 ///
 /// Each sheet of a mesh's axis lies between two regions of the surface, which are flat or smooth. Regions are ordered
-/// by their first face in the mesh. Sheets are ordered by their lower region, then by the other region. Sheets between
-/// the same two regions are ordered by the distances of their centroids from vertices of the mesh. Sheets with less
-/// than a thousandth of the axis's total area come last. So numbers of sheets do not depend on the position of the
+/// by their first face in the mesh. Sheets are ordered by their lower region, then by their higher region. Sheets
+/// between the same two regions are ordered by the distances of their centroids from vertices of the mesh. Sheets with
+/// less than a thousandth of the axis's total area come last. So numbers of sheets do not depend on the position of the
 /// mesh. The grid does not change the numbers either, if the same sheets are found. (docs/guide/medial-axes.md contains
 /// the full rule.) Sheets of an image's axis are numbered in the order of their first triangles.
 ///
-/// If two walls (parts of the surface around footprints) are found for a vertex, it lies on their bisector. Such a
-/// vertex is at most 0.7 voxels from a corner of the voxel lattice, along each axis of the grid. If no such point is
-/// found, the vertex may lie elsewhere in the solid (docs/theory/medial-axis.md). The radius is the distance to the
-/// surface, exact to 1e-9 of the solid's extent.
+/// If two walls (parts of the surface around footprints) are found for a vertex, the vertex lies on their bisector. A
+/// vertex on a bisector is at most 0.7 voxels from a corner of a voxel, along each axis of the grid. If no point on a
+/// bisector is found, the vertex may lie elsewhere in the solid (docs/theory/medial-axis.md). The radius is the
+/// distance to the surface, exact to 1e-9 of the solid's extent.
 ///
 /// @return      the same bytes for any number of threads. Check report().topology_matches, which is true if the axis
 /// has the topology of the solid. Sites of a mesh are those of SiteTable(mesh). For an image, distances are measured to
 /// the faces between selected voxels and voxels that are not selected. Sites of an image are the voxels on the far side
-/// of these faces. These voxels are not selected, or lie just outside the image. A voxel outside the image has the id
+/// of these faces. Such a voxel is not selected, or lies just outside the image. A voxel outside the image has the id
 /// of the image's voxel next to it.
-/// @throws InvalidMesh if no interior of a body is found (the message mentions triangles that face inwards). Also if
-/// the longest side of the box around the solid is below 5e-7 of its largest coordinate. InvalidOption; OutOfMemory;
-/// Cancelled.
+/// @throws InvalidMesh if no interior of a body is found (the message mentions triangles that face inwards). Also
+/// thrown if the longest side of the box around the solid is below 5e-7 of the largest coordinate. InvalidOption;
+/// OutOfMemory; Cancelled.
 /// Cost: near-linear in the voxels of the solid; about 10 bytes of memory per voxel of the box around it.
 /// Method: docs/theory/medial-axis.md (Sud 2006, ch. 5; Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009).
 [[nodiscard]] MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options = {},

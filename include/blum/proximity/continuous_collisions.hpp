@@ -25,7 +25,7 @@ struct VertexFaceCollision {
 
 /// Two edges that meet.
 struct EdgeEdgeCollision {
-  Segment first{};  ///< Ends of the edge, the smaller index first. `first` is the smaller edge.
+  Segment first{};  ///< Vertices of the edge, smaller index first. `first` precedes `second` in lexicographic order.
   Segment second{};
   double time = 0;  ///< Time of impact, as returned by edge_edge_impact().
 };
@@ -34,7 +34,7 @@ struct ContinuousCollisions {
   std::vector<VertexFaceCollision> vertex_face;  ///< By ascending (vertex, face).
   std::vector<EdgeEdgeCollision> edge_edge;      ///< By ascending (first, second).
   std::size_t box_pairs = 0;  ///< Pairs of a vertex and a face, or of two edges, whose moving boxes touch.
-  /// Number of the pairs in `box_pairs` that were tested exactly, because no examined direction separates them.
+  /// Number of pairs in `box_pairs` that needed an exact test: no examined direction separates the two features.
   std::size_t exact_tests = 0;
   std::vector<PhaseTime> phases;
 

@@ -52,20 +52,20 @@ struct FirstContact {
 /// pair of the contact. The counts `box_pairs` and `exact_tests` are 0.
 [[nodiscard]] SceneCollisions collisions_of(const FirstContact& contact);
 
-/// Returns the first contact of a moving mesh with itself: the first of all pairs that continuous_collisions() returns,
-/// by time. It does not search for the other pairs.
+/// Returns the first contact of a moving mesh with itself: the earliest of all pairs that continuous_collisions()
+/// returns. The function does not search for later pairs.
 /// @param mesh, end  as for continuous_collisions().
-/// @return  nullopt if nothing meets. Both objects are number 0. The same bytes for any number of threads.
+/// @return  nullopt if nothing meets. Both objects of a contact are number 0. The same for any number of threads.
 /// @throws  as continuous_collisions(), except OutOfMemory.
-/// Cost: at most about twice that of continuous_collisions(). It is much less if many features meet. An example is two
-/// beams of 2,624 triangles each, with 306,112 pairs that meet: 5 milliseconds instead of 150.
+/// Cost: at most about twice that of continuous_collisions(). The cost is much lower if many features meet: two beams
+/// of 2,624 triangles each, with 306,112 pairs that meet, take 5 milliseconds instead of 150.
 /// Method: docs/theory/proximity.md.
 [[nodiscard]] std::optional<FirstContact> first_contact(const MeshView& mesh, std::span<const Vec3d> end,
                                                         const ImpactOptions& options = {}, const Context& context = {});
 
-/// Returns the first contact of two moving meshes, objects 0 and 1. Contacts of a mesh with itself do not count.
-/// @param first, first_end    a mesh at time 0, and its vertices at time 1.
-/// @param second, second_end  the same for the other mesh.
+/// Returns the first contact of two moving meshes, objects 0 and 1. Contacts of a mesh with itself are ignored.
+/// @param first, first_end    the first mesh at time 0, and its vertices at time 1.
+/// @param second, second_end  the second mesh at time 0, and its vertices at time 1.
 [[nodiscard]] std::optional<FirstContact> first_contact(const MeshView& first, std::span<const Vec3d> first_end,
                                                         const MeshView& second, std::span<const Vec3d> second_end,
                                                         const ImpactOptions& options = {}, const Context& context = {});

@@ -55,11 +55,11 @@ void check(const ImpactOptions& options);
 /// reported contact is false. Triangles may lose their area and turn over. The four points may stay in one plane, or
 /// not move at all.
 /// @param points  the vertex, then the corners of the triangle.
-/// @return        nullopt if vertex and triangle never meet. Otherwise the time of the first contact, 0 to 1. It is
-///                rounded down to a multiple of the largest power of two that is at most options.tolerance.
+/// @return        nullopt if vertex and triangle never meet. Otherwise the time of the first contact, 0 to 1. The time
+///                is rounded down to a multiple of the largest power of two that is at most options.tolerance.
 /// @throws InvalidMesh if a coordinate is not finite; InvalidOption.
-/// Cost: 0.1 microseconds if simple bounds separate vertex and triangle, 1 microsecond for most contacts. If both only
-/// shift, 0.2 to 1 microsecond. Otherwise about 10 microseconds if doubles do not decide.
+/// Cost: 0.1 microseconds if simple bounds separate vertex and triangle, 1 microsecond for most contacts. If both
+/// features only translate: 0.2 to 1 microsecond. For other motions that doubles do not decide: about 10.
 /// Method: docs/theory/proximity.md.
 [[nodiscard]] std::optional<double> vertex_face_impact(const FourMovingPoints& points,
                                                        const ImpactOptions& options = {});

@@ -16,7 +16,7 @@ struct TranslationOptions {
   /// For convex solids: largest difference between the upper and the lower bound, as a fraction of the upper bound: 0
   /// to 1. With 0, the difference is as small as rounding permits.
   double translation_tolerance = 0;
-  /// Largest number of planes that are tried for convex solids, at least 1. When it is reached, the gap stays wider.
+  /// For convex solids: largest number of planes to try, at least 1. After this number, the bounds may differ more.
   std::size_t max_planes = 50'000;
   /// For solids that are not convex: largest number of translations that the search tries.
   std::size_t max_tests = 1'500;

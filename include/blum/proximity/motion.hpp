@@ -23,7 +23,7 @@ using ObjectId = Id<struct ObjectTag>;
 /// 1 are exact.
 struct ObjectMotion {
   ObjectId object;
-  std::span<const Vec3d> vertices = {};
+  std::span<const Vec3d> vertices = {};      ///< Positions at time 1, before the transform. If empty, unchanged.
   std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, the transform does not change.
 };
 
@@ -31,10 +31,10 @@ struct ObjectMotion {
 struct ObjectCollisions {
   ObjectId first;
   ObjectId second;
-  std::vector<VertexFaceCollision> vertex_face;
+  std::vector<VertexFaceCollision> vertex_face;  ///< Vertices of the first object, faces of the second object.
   /// Collisions of vertices of the second object with faces of the first object; empty if both objects are the same.
   std::vector<VertexFaceCollision> face_vertex;
-  std::vector<EdgeEdgeCollision> edge_edge;
+  std::vector<EdgeEdgeCollision> edge_edge;  ///< Edges of the first object, edges of the second object.
 
   /// Returns the earliest time of impact; nullopt if nothing collides.
   [[nodiscard]] std::optional<double> earliest() const;
@@ -43,7 +43,7 @@ struct ObjectCollisions {
 struct SceneCollisions {
   std::vector<ObjectCollisions> objects;  ///< Pairs of objects that collide, by ascending (first, second).
   std::size_t box_pairs = 0;              ///< Pairs of a vertex and a face, or of two edges, whose moving boxes touch.
-  /// Number of the pairs in `box_pairs` that were tested exactly, because no examined direction separates them.
+  /// Number of pairs in `box_pairs` that needed an exact test: no examined direction separates the two features.
   std::size_t exact_tests = 0;
   std::vector<PhaseTime> phases;
 

@@ -38,17 +38,17 @@ void check(const PenetrationOptions& options);
 
 /// Connected part of the overlap of two solids.
 ///
-/// Its border consists of two sides. Each side is the part of one solid's surface that lies in the other solid. The
+/// The part is bounded by two sides. Each side is the region of one solid's surface that lies in the other solid. The
 /// depth is the largest distance of a point of one side from the other side (Sud 2006, ch. 4: local penetration depth).
-/// It is not the length of the shortest translation that separates the solids. A translation by the depth brings the
-/// deepest point to the other side, but other points may remain in the other solid. Surfaces that do not bound this
-/// part do not count. If surfaces coincide, the depth is its limit as the displacement of one solid tends to zero.
+/// The depth is not the length of the shortest translation that separates the solids. A translation by the depth brings
+/// the deepest point to the other side, but other points may remain in the other solid. Only surfaces that bound the
+/// part matter. If surfaces coincide, the depth is the limit for a displacement of one solid that tends to zero.
 struct Penetration {
   ObjectId first_object;
   ObjectId second_object;
   double depth = 0;        ///< Mesh units; distance of `deep_point` and `surface_point`.
   double depth_bound = 0;  ///< Upper bound on the true depth, proven except for rounding.
-  /// Unit vector. If the first object moves by `depth` in this direction, `deep_point` and `surface_point` coincide.
+  /// Unit vector. If the first object moves by `depth` along it, `deep_point` and `surface_point` coincide.
   Vec3d direction;
   Vec3d deep_point;            ///< Deepest point, on the surface of one object and inside the other object.
   Vec3d surface_point;         ///< Point of the other object's surface that is closest to `deep_point`.

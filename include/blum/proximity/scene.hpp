@@ -34,7 +34,7 @@ struct ObjectOptions {
   std::uint32_t layers = 1;          ///< Layers that contain the object, one bit for each layer.
   std::uint32_t meets = 0xffffffff;  ///< Layers whose objects this object is compared with, one bit for each layer.
   bool self = false;                 ///< True if the object is compared with itself.
-  /// Name in messages, for example of its file. If empty, messages contain its number: "object 3".
+  /// Name in messages, for example a file name. If empty, messages contain the object's number: "object 3".
   std::string name = {};
 };
 
@@ -104,7 +104,7 @@ struct PrimitivePair {
 struct ProximityReport {
   Culling culling = Culling::bvh;  ///< Method that was used.
   std::size_t cells = 0;           ///< Number of cells of Voronoi culling.
-  /// Primitives for which Voronoi culling used the hierarchy: they touch many cells, or crowded cells.
+  /// Number of primitives in many cells or crowded cells, which Voronoi culling left to the hierarchy of boxes.
   std::size_t left_over = 0;
   std::size_t object_pairs = 0;  ///< Number of compared pairs of objects, including objects compared with themselves.
   std::size_t candidates = 0;    ///< Number of pairs of primitives that culling did not exclude.
@@ -170,7 +170,7 @@ class ProximityScene {
   /// @throws as add().
   void update(ObjectId object, const MeshView& mesh, const Context& context = {});
 
-  /// Excludes a pair of objects from comparisons, whatever their layers. Both may be the same object.
+  /// Excludes a pair of objects from comparisons, whatever their layers. The two objects may be the same.
   /// @param is_excluded  false: removes an earlier exclusion of this pair.
   void exclude(ObjectId first, ObjectId second, bool is_excluded = true);
 
@@ -202,13 +202,13 @@ class ProximityScene {
   /// Returns true if the objects of any compared pair meet. The search stops at the first pair that meets.
   /// @throws as meets() of two objects.
   [[nodiscard]] bool meets(const Context& context = {}) const;
-  /// Returns for each given transform of the second object 1 if it then meets the first object, else 0. The scene does
-  /// not change. Entry k equals meets() after update(second, transforms[k]).
-  /// @param transforms  of the second object; they replace its own.
+  /// Tests the second object at each transform: entry k is 1 if it meets the first object at transforms[k], else 0.
+  /// Entry k equals meets() after update(second, transforms[k]). The scene does not change.
+  /// @param transforms  of the second object; each replaces the object's present transform.
   /// @throws InvalidOption if a transform is not rigid to 1e-9, is a reflection, or moves beyond 1e70. It is also
   /// thrown if both objects are the same. Otherwise as meets(). Cost: that of meets() for each transform, divided by
-  /// the number of threads. It is about 0.2 microseconds if the primitives that met at the transform before meet again.
-  /// Progress counts the transforms.
+  /// the number of threads. A transform takes about 0.2 microseconds if the primitives that met at the previous one
+  /// meet again. Progress counts the transforms.
   [[nodiscard]] std::vector<std::uint8_t> meets(ObjectId first, ObjectId second,
                                                 std::span<const RigidTransform> transforms,
                                                 const Context& context = {}) const;
@@ -232,16 +232,16 @@ class ProximityScene {
   /// common vertex is a shared corner.
   [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
 
-  /// Returns all pairs of a vertex and a face, and of two edges, of compared objects that meet while objects move. For
-  /// each pair, the result contains the time of the first contact: see continuous_collisions(). Objects without a
-  /// motion rest. The scene does not change: call update() to move its objects afterwards.
+  /// Returns all collisions of compared objects while objects move: pairs of a vertex and a face, and pairs of two
+  /// edges. For each pair, the result contains the time of the first contact: see continuous_collisions(). Objects
+  /// without a motion stay at rest. The scene does not change: call update() to move its objects.
   /// @param motions  at most one for each object.
   /// @throws InvalidMesh for vertices as update() does; InvalidOption; OutOfMemory if more than 2^26 pairs collide.
   [[nodiscard]] SceneCollisions continuous(std::span<const ObjectMotion> motions, const ImpactOptions& options = {},
                                            const Context& context = {}) const;
 
-  /// Returns the first contact of objects that move: the first of all pairs that continuous() returns, by time. Among
-  /// pairs with the same time, it is the first that continuous() lists. It does not search for the other pairs.
+  /// Returns the first contact of objects that move: the earliest of all pairs that continuous() returns. Among pairs
+  /// with the same time, returns the pair that continuous() lists first. The function skips later pairs.
   /// @param motions  at most one for each object.
   /// @return nullopt if nothing meets.
   /// @throws InvalidMesh for vertices as update() does; InvalidOption.
@@ -254,12 +254,12 @@ class ProximityScene {
   /// touch.
   ///
   /// If one solid lies in the other, the depth is the largest distance of the inner solid's points from the outer
-  /// solid's surface. If faces of both solids coincide, depths depend on which object is first, by up to a factor of 2
+  /// solid's surface. If faces of both solids coincide, the order of the objects changes depths by up to a factor of 2
   /// (docs/theory/proximity.md). If both objects are the same, returns the connected regions in which the winding
-  /// number of the object's surface is 2 or more. The shells of an object may cross or touch, or lie in each other and
-  /// face the same way. Then the object is the union of the solids that they bound.
-  /// @throws InvalidMesh if an object is not closed, or faces inwards. It is also thrown if an object is further from
-  /// the origin than about 1e9 times its size. Rounding then hides the object's shape. InvalidOption; Cancelled.
+  /// number of the object's surface is 2 or more. If shells of an object cross, touch, or lie in each other and face
+  /// the same way, the object is the union of the solids that the shells bound.
+  /// @throws InvalidMesh if an object is not closed, or faces inwards. Also thrown if an object is further from the
+  /// origin than about 1e9 times its size: rounding then hides the object's shape. InvalidOption; Cancelled.
   /// Cost: about 2 microseconds per triangle and 0.1 ms per pair of triangles that cross. The depth of each common part
   /// takes up to 2 s, or more if the part is much wider than deep. If an object overlaps itself, a common part of n
   /// triangles, from s connected parts of the surface, takes up to n * s microseconds.
@@ -274,24 +274,24 @@ class ProximityScene {
   /// microseconds per triangle, once for each object. Progress counts the pairs.
   [[nodiscard]] Penetrations penetrations(const PenetrationOptions& options = {}, const Context& context = {}) const;
 
-  /// Returns bounds on the length of the shortest translation of the first solid that separates it from the second.
-  /// Unlike penetration(), this is one length for the whole pair. Both bounds are equal, except for rounding, if both
-  /// solids are convex. Both are 0 if the solids are apart or touch.
+  /// Returns bounds on the length of the shortest translation of the first solid that separates it from the second. The
+  /// bounds are for the whole pair, not for parts of the overlap as in penetration(). The bounds are equal, except for
+  /// rounding, if both solids are convex. The bounds are 0 if the solids are apart or touch.
   /// @throws InvalidMesh as penetration(); InvalidOption, also if both objects are the same; Cancelled.
   /// Cost: see blum::least_translation().
   [[nodiscard]] LeastTranslation least_translation(ObjectId first, ObjectId second,
                                                    const TranslationOptions& options = {},
                                                    const Context& context = {}) const;
 
-  /// Returns the signed distance of two solids, mesh units. It is their distance if they are apart, 0 if they touch,
-  /// and minus the largest depth if they overlap. If the boxes of both objects are apart, their surfaces may be open.
-  /// If both objects are the same, and every two of its primitives share a vertex, the result is infinite.
+  /// Returns the signed distance of two solids, mesh units. It is positive if the solids are apart, 0 if they touch,
+  /// and minus the largest depth if they overlap. If the boxes of the objects are apart, their surfaces may be open.
+  /// For an object and itself, the result is infinite if every two of its primitives share a vertex.
   /// @throws as penetration().
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
   /// Returns the signed distances of all compared pairs of objects. For objects that are apart or touch, the pair is
-  /// that of separation(). For objects that overlap, it is the deepest_pair() of their deepest part, with a negative
-  /// distance. An object compared with itself is left out if every two of its primitives share a vertex.
+  /// that of separation(). For objects that overlap, the pair is the deepest_pair() of the deepest part, with a
+  /// negative distance. An object compared with itself is left out if every two of its primitives share a vertex.
   /// @throws as signed_separation().
   /// Cost: that of separation(), plus that of penetration() for each pair whose boxes meet.
   [[nodiscard]] ProximityPairs signed_separations(const PenetrationOptions& options = {},

@@ -33,8 +33,8 @@ struct SurfaceAtlas {
   std::vector<std::array<TexturePlace, 3>> corners;
   /// For each texel: the triangle that it belongs to, or none(). Texels are listed in rows from the top, x fastest. A
   /// texel belongs to a triangle if a lookup at a point of the triangle reads it, as the nearest texel or bilinearly.
-  /// If lookups in several triangles read a texel, it belongs to the triangle in which its middle lies deepest. If the
-  /// middle lies in none of these triangles, the texel belongs to the closest triangle.
+  /// If lookups in several triangles read a texel, it belongs to the triangle in which the texel's middle lies deepest.
+  /// If the middle lies in none of them, the texel belongs to the closest of these triangles.
   Buffer<TriangleId> triangle;
   /// True if lookups in two different triangles never read the same texel. Always false for atlases from given texture
   /// coordinates.

@@ -39,12 +39,12 @@ struct PolyhedronSites {
 
 /// Finds the sites of a polyhedron, exactly for the given triangles.
 ///
-/// Let v be a vertex with edges to w_1, ..., w_n. Only the surface near v is considered here. Its point closest to q is
+/// Let v be a vertex with edges to w_1, ..., w_n. Only the surface near v is considered here. The point closest to q is
 /// v if (q - v) . (w_i - v) <= 0 for all i. All such points q form the dual cone of the edges. If the cone has an
-/// interior, it meets the surface near v in v alone. So the part of the cone near v lies either inside or outside the
+/// interior, it meets the surface near v only in v. So the part of the cone near v lies either inside or outside the
 /// solid. Each face of the cone belongs to an edge at v. All these edges are reflex if the cone lies inside, and convex
-/// if it lies outside. The half-spaces of the edges cut the cone one after the other. Exact signs of determinants of
-/// three edges decide everything. (Sud 2006, 5.3: sites of a polyhedron.)
+/// if it lies outside. To find the cone, space is cut by the half-spaces of the edges. All decisions use exact signs of
+/// determinants of three edges. (Sud 2006, 5.3: sites of a polyhedron.)
 ///
 /// @param mesh   closed, facing away from its inside, without crossings. Coordinates must be 0, or have magnitudes of
 ///               1e-80 to 1e100. Shells may touch in vertices.

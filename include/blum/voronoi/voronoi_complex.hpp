@@ -39,11 +39,11 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,
-  ///< if a tolerance is given: only cubes bound the distance from the exact diagram.
-  cubes,  ///< Cubes of an octree, each with a proof of its topology.
-  traced,
-  ///< cubes.
+  automatic,  ///< Planes if all bodies are convex, otherwise traced seams. Cubes if tracing fails or takes long, or if
+              ///< a tolerance is given and a body is not convex: only cubes bound the distance from the exact diagram.
+  cubes,   ///< Cubes of an octree, each with a proof of its topology.
+  traced,  ///< Planes if all bodies are convex, otherwise traced seams, which may take minutes. Cubes if tracing
+           ///< fails.
 };
 
 template <>
@@ -58,18 +58,18 @@ struct VoronoiOptions {
   /// Part of the diagram that the complex represents.
   VoronoiPart part = VoronoiPart::all;
   VoronoiMethod method = VoronoiMethod::automatic;
-  /// Planes and traces: triangles count as one face if their corners lie within this distance of one plane, >= 0, mesh
-  /// units. For traces, it is twice this distance. Junctions and seams of planes within 8 times this distance are
-  /// joined. 0 uses the mesh as given. If not given, it is 16 times the rounding error of the largest coordinate. The
-  /// error is that of the precision whose digits the longest coordinate fills. With up to 20 binary digits it is 0,
-  /// with 21 to 24 that of single precision. Cubes: ignored.
+  /// Planes and traces: triangles form one face if their corners lie within this distance of one plane, >= 0, mesh
+  /// units. For traces, twice this distance is allowed. Junctions and seams of planes within 8 times this distance are
+  /// joined. With 0, the mesh is used as given. Default: 16 times the rounding error of the largest coordinate. The
+  /// rounding error is 0 if the longest coordinate has up to 20 binary digits. For 21 to 24 digits, it is that of
+  /// single precision. Cubes: ignored.
   std::optional<double> flatness = {};
   /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
   /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Edges of traced medial axes are
   /// at most about as long as this limit. Planes: ignored.
   int resolution = 16;
-  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With this
-  /// option, VoronoiMethod::automatic traces no seams. If seams are traced, their chords are within half of it.
+  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. If it is
+  /// set, VoronoiMethod::automatic traces no seams. Chords of traced seams are within half of the tolerance.
   std::optional<double> tolerance = {};
   /// The options below apply only if cubes are used. To use cubes, set `method` or `tolerance`.
   /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
@@ -200,19 +200,19 @@ struct VoronoiReport {
   double flatness = 0;  ///< If exact or traced: bound on a corner's distance from its face's plane, mesh units.
   double joined = 0;    ///< If exact or traced: junctions and seams within this distance are joined, mesh units.
   /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second,
-  /// smaller one. Reflex edges and vertices inside a joined face are not sites, so they have no regions.
+  /// which has a smaller number. Edges and vertices inside a joined face have no regions.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
-  /// True if the seams were traced (VoronoiMethod::traced). Then sheets, seams and junctions are those of the diagram
-  /// within `joined`, as far as checks show. All sheets are closed, and the complex has the expected Betti numbers.
+  /// True if the seams were traced (VoronoiMethod::traced). If true, checks show that sheets, seams and junctions are
+  /// those of the diagram within `joined`, all sheets are closed, and the Betti numbers are as expected.
   bool traced = false;
-  /// If traced: each point of a wall with two footprints is at most this much farther from the wall's own sites than
+  /// If traced: bound, over all points of walls with two footprints, on the distance from the wall's sites minus that
   /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
   double label_error = 0;
   /// If traced: largest distance of chords from curved seams and walls, at their middles, and largest error of radii
   /// between vertices, mesh units.
   double chord = 0;
   /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
-  /// diagram of a flat polyhedron. Its corners are within `moved` of those of the mesh.
+  /// diagram of a polyhedron with flat faces. Its corners are within `moved` of the corners of the mesh.
   bool proven = false;
   /// If traced: largest displacement of a corner to make the faces flat, mesh units. 0 if the given faces are flat,
   /// except for rounding.
@@ -220,11 +220,11 @@ struct VoronoiReport {
   /// If traced: numbers of junctions inside the solid and of seams, in the whole diagram.
   std::size_t junctions = 0;
   std::size_t seams = 0;
-  /// If traced: junctions and seams that exist in this exact diagram as they were traced.
+  /// If traced: numbers of junctions and seams that are proven to exist as they were traced (see `proven`).
   std::size_t proven_junctions = 0;
   std::size_t proven_seams = 0;
-  /// If traced: places where the proof did not succeed. Each other junction is proven. A seam is open at one place.
-  /// Reflex vertices whose regions are thinner than 1e-7 of their lengths, and left out, are also open.
+  /// If traced: junctions that are not proven, and one unproven piece of each seam that is not proven. Also listed:
+  /// reflex vertices that were left out, because their regions are thinner than 1e-7 of their lengths.
   std::vector<OpenVoronoiPlace> open;
   /// If tracing failed: the reason and the position, for each attempt. Some attempts join close junctions, others keep
   /// them apart.
@@ -333,9 +333,9 @@ struct VoronoiComplex {
   ///
   /// Columns of vertices: `radius` (float64, mesh units) is the distance from the closest site, 0 on the surface.
   /// `footprint_0` and `footprint_1` (3 x float64) are the closest points of the surface. If more than two closest
-  /// points exist, the two with the largest angle between them are stored. If only one exists, both columns contain
-  /// this point. `site_0` and `site_1` (int32) are the sites of the footprints in the SiteTable. `separation_angle`
-  /// (float64, degrees) is the angle between the footprints, seen from the vertex.
+  /// points exist, the two with the largest angle between them are stored. If only one point exists, both columns
+  /// contain this point. `site_0` and `site_1` (int32) are the sites of the footprints in the SiteTable.
+  /// `separation_angle` (float64, degrees) is the angle between the footprints, seen from the vertex.
   ///
   /// Columns of triangles: `site_a` and `site_b` (int32) are the sites of the regions on the two sides, the smaller
   /// site first. On the surface, `site_a` is -1. `separation_angle` (float32, degrees) is the angle between the two
@@ -344,7 +344,7 @@ struct VoronoiComplex {
   ///
   /// Sites in site_a and site_b are numbered as in voronoi_sites(): first faces, in the order of their smallest
   /// triangles, then reflex edges, then reflex vertices. If faces were joined (VoronoiReport::joined_faces), the
-  /// smallest number stands for all.
+  /// smallest number is used for all of them.
   ///
   /// If VoronoiReport::exact or VoronoiReport::traced, vertices also have the column `junction` (int32): 1 at a
   /// junction, 0 inside a seam or sheet.
@@ -357,30 +357,30 @@ struct VoronoiComplex {
 ///
 /// If all bodies are convex, the diagram consists of planar polygons. The distance from the border is the least of the
 /// distances from the faces' planes, so its graph bounds a convex polytope in four dimensions. The facets, ridges,
-/// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which exist. Sheets
-/// are divided into triangles without further vertices, except one in the middle of some. (docs/theory/voronoi.md,
+/// edges and vertices of this polytope are regions, sheets, seams and junctions. Exact signs decide which of them
+/// exist. Sheets are divided into triangles; some get one vertex in the middle for this. (docs/theory/voronoi.md,
 /// "Convex solids".)
 ///
-/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between them are divided
-/// into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the solid is
-/// divided into cubes:
+/// Seams of other solids are traced from junction to junction, as VoronoiMethod states. Sheets between seams are
+/// divided into triangles, and the result is checked. (docs/theory/voronoi.md, "Traced solids".) If a check fails, the
+/// solid is divided into cubes:
 ///
 /// Let K be the union of the surface and the walls between regions of different sites. An octree in generic position
 /// cuts space into cubes. The closest sites along the edges of cubes follow from the order of roots, or from exact
 /// signs if doubles do not decide. Squares between cubes are split into smaller squares until the border of each square
 /// determines K in the square. A cube passes the test if its boundary proves that all components of K in the cube are
-/// acyclic. Otherwise, the cube is split.
+/// acyclic. A cube that does not pass is split.
 ///
-/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell).
-/// This complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
+/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell). The
+/// order complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
 /// 2006, 5.3 and 5.4; theorem and proof: docs/theory/voronoi.md.)
 ///
 /// If VoronoiReport::certified is false, parts of the complex may be missing or wrong.
 ///
 /// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
 /// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
-/// of the mesh. Cubes use triangles as given, so a face that rounding has bent counts as several sites.
-/// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
+/// of the mesh. Cubes use triangles as given, so a face that rounding has bent becomes several sites.
+/// @throws InvalidMesh if the solid does not meet these conditions; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: for n faces of a convex body, about n^2 * 0.2 us on two cores (4,000 faces: 3 s). Traces take about 0.5
 /// to 5 ms per site on one core. Cubes take about 0.1 ms on one core and 10 kB of memory each. Meshes of 1,000
 /// triangles need thousands to tens of thousands of cubes.
