@@ -300,11 +300,11 @@ struct Description<BallUnionCheck> {
 /// further balls are grown from points next to the body's surface. If the solid consists of voxels, the further balls
 /// are grown from points in the body's box instead. If theta is unknown, missing parts are not checked.
 ///
-/// A ball counts if it touches two walls at points at least lambda apart, and the angle between these points, seen from
-/// its centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that
-/// is less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the
-/// two points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls
-/// whose points are closer than this never count.
+/// A ball counts if it touches two walls at points at least lambda apart, and the angle between them, seen from its
+/// centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is
+/// less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the two
+/// points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls whose
+/// points are closer than this never count.
 ///
 /// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
 /// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
@@ -321,10 +321,10 @@ struct Description<BallUnionCheck> {
 /// rule finds missing ends of wires. These balls are also grown from vertices of the surface.
 ///
 /// In polyhedra, the rule also finds single missing sheets. Here, walls are flat or smooth parts of the surface. A pair
-/// of walls is judged if more than 8 balls touch both walls, and more than 6 of these balls have centres that are 2
-/// voxels apart. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180
-/// degrees if that is less. The radius of these balls is above `missing_allowance`. Half of the balls must be next to a
-/// cell of the axis between the two walls (docs/theory/certificate.md).
+/// of walls is judged if more than 8 balls touch both walls. More than 6 of these balls must have centres 2 voxels
+/// apart. The separation angle of these balls is at least theta plus 10 degrees, or halfway from theta to 180 degrees
+/// if that is less. The radius of these balls is above `missing_allowance`. Half of the balls must be next to a cell of
+/// the axis between the two walls (docs/theory/certificate.md).
 ///
 /// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
 /// but not judged.

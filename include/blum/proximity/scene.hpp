@@ -257,7 +257,7 @@ class ProximityScene {
   /// solid's surface. If faces of both solids coincide, the order of the objects changes depths by up to a factor of 2
   /// (docs/theory/proximity.md). If both objects are the same, returns the connected regions in which the winding
   /// number of the object's surface is 2 or more. If shells of an object cross, touch, or lie in each other and face
-  /// the same way, the object is the union of the solids that the shells bound.
+  /// the same way, the object is the union of their solids.
   /// @throws InvalidMesh if an object is not closed, or faces inwards. Also thrown if an object is further from the
   /// origin than about 1e9 times its size: rounding then hides the object's shape. InvalidOption; Cancelled.
   /// Cost: about 2 microseconds per triangle and 0.1 ms per pair of triangles that cross. The depth of each common part

@@ -39,11 +39,11 @@ struct Description<VoronoiPart> {
 
 /// Method that computes a Voronoi complex.
 enum class VoronoiMethod : std::uint8_t {
-  automatic,  ///< Planes if all bodies are convex, otherwise traced seams. Cubes if tracing fails or takes long, or if
-              ///< a tolerance is given and a body is not convex: only cubes bound the distance from the exact diagram.
-  cubes,   ///< Cubes of an octree, each with a proof of its topology.
-  traced,  ///< Planes if all bodies are convex, otherwise traced seams, which may take minutes. Cubes if tracing
-           ///< fails.
+  automatic,  ///< Planes if all bodies are convex, otherwise traced seams. Cubes if tracing fails or takes long. If a
+              ///< tolerance is given, cubes instead of seams: only cubes bound the distance from the exact diagram.
+  cubes,      ///< Cubes of an octree, each with a proof of its topology.
+  traced,     ///< Planes if all bodies are convex, otherwise traced seams, which may take minutes. If tracing
+              ///< fails, cubes.
 };
 
 template <>
@@ -68,8 +68,8 @@ struct VoronoiOptions {
   /// number, 1 to 1024. Chords of traced seams and walls are within 1/32 of this limit. Edges of traced medial axes are
   /// at most about as long as this limit. Planes: ignored.
   int resolution = 16;
-  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. If it is
-  /// set, VoronoiMethod::automatic traces no seams. Chords of traced seams are within half of the tolerance.
+  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies. With a
+  /// tolerance, VoronoiMethod::automatic traces no seams. Chords of traced seams are within half the tolerance.
   std::optional<double> tolerance = {};
   /// The options below apply only if cubes are used. To use cubes, set `method` or `tolerance`.
   /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
@@ -202,8 +202,8 @@ struct VoronoiReport {
   /// If exact or traced: pairs of faces of polyhedron_sites(), ascending. The first face was joined to the second,
   /// which has a smaller number. Edges and vertices inside a joined face have no regions.
   std::vector<std::array<std::uint32_t, 2>> joined_faces;
-  /// True if the seams were traced (VoronoiMethod::traced). If true, checks show that sheets, seams and junctions are
-  /// those of the diagram within `joined`, all sheets are closed, and the Betti numbers are as expected.
+  /// True if the seams were traced (VoronoiMethod::traced). If true, checks suggest that sheets, seams and junctions
+  /// are those of the diagram within `joined`. All sheets are closed, and the Betti numbers are as expected.
   bool traced = false;
   /// If traced: bound, over all points of walls with two footprints, on the distance from the wall's sites minus that
   /// from the border. A wall of the exact diagram that the complex lacks cannot change distances by more.
@@ -212,7 +212,7 @@ struct VoronoiReport {
   /// between vertices, mesh units.
   double chord = 0;
   /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
-  /// diagram of a polyhedron with flat faces. Its corners are within `moved` of the corners of the mesh.
+  /// diagram of a polyhedron with flat faces, whose corners are within `moved` of the mesh.
   bool proven = false;
   /// If traced: largest displacement of a corner to make the faces flat, mesh units. 0 if the given faces are flat,
   /// except for rounding.
