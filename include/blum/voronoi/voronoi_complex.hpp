@@ -212,7 +212,7 @@ struct VoronoiReport {
   /// between vertices, mesh units.
   double chord = 0;
   /// True if traced, and all junctions and seams are proven. Then each sheet, seam and junction is that of the exact
-  /// diagram of a polyhedron with flat faces, whose corners are within `moved` of the mesh.
+  /// diagram of a polyhedron with flat faces. Its corners are within `moved` of the corners of the mesh.
   bool proven = false;
   /// If traced: largest displacement of a corner to make the faces flat, mesh units. 0 if the given faces are flat,
   /// except for rounding.
