@@ -52,7 +52,7 @@ case ${1:-} in
   compiler-alone-serial) compiler_alone compiler-alone-serial SERIAL ;;
   # Uses other instructions in geometry and field, and no threads in core, so that every loop runs differently. `make
   # tsan` tests std::thread. Builds the tool without its precompiled header, which might hide a missing include.
-  scalar-serial) with_tests scalar-serial -DBLUM_PCH=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=SERIAL ;;
+  scalar-serial) with_tests scalar-serial -DBLUM_OMPL=OFF -DBLUM_PCH=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=SERIAL ;;
   *)
     echo "configurations: unknown configuration $1" >&2
     exit 2

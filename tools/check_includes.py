@@ -84,6 +84,8 @@ def third_party_rule(source: str, name: str) -> str | None:
         return None if source.startswith("src/field/cuda/") else "CUDA belongs in src/field/cuda"
     if name in ("zlib.h", "png.h", "tiny_gltf.h", "nlohmann/json.hpp"):
         return None if source.startswith("src/io/") else "only src/io reads and writes compressed files"
+    if name.startswith("ompl/"):
+        return None if source == "src/planning/ompl_search.cpp" else "OMPL belongs in src/planning/ompl_search.cpp"
     if name.startswith("boost/multiprecision/"):
         return None if source.startswith("src/exact/") else "large integers belong in src/exact"
     if STANDARD.fullmatch(name) or SYSTEM.fullmatch(name):

@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(make g++ cmake ninja-build libtbb-dev libhwy-dev libboost-dev zlib1g-dev libpng-dev libcli11-dev
-          nlohmann-json3-dev libtinygltf-dev)
+          nlohmann-json3-dev libtinygltf-dev libompl-dev)
 python=(python3-dev python3-venv ca-certificates)
 tests=(libgtest-dev python3-dev python3-venv ca-certificates)
 bench=(libbenchmark-dev libembree-dev libcgal-dev libopenvdb-dev libfcl-dev python3 python3-venv ca-certificates)

@@ -32,6 +32,7 @@ void add_surface_command(const CommandLine& line);
 void add_centreline_command(const CommandLine& line);
 void add_proximity_command(const CommandLine& line);
 void add_ccd_command(const CommandLine& line);
+void add_plan_command(const CommandLine& line);
 void add_query_command(const CommandLine& line);
 void add_sample_command(const CommandLine& line);
 void add_surface_map_command(const CommandLine& line);

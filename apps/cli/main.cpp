@@ -16,6 +16,7 @@
 #include "common/options.hpp"
 #include "common/progress.hpp"
 #include "common/summary.hpp"
+#include "planning/no_path.hpp"
 
 namespace blum::cli {
 namespace {
@@ -34,7 +35,7 @@ constexpr const char* examples = R"(Examples:
   blum view knot.ply knot.nrrd axis.vtp --open     show all three in a browser
 
 `blum COMMAND --help` lists options and examples. Exit status: 0 success, 2 invalid usage,
-3 not certified, 1 any other failure. Ctrl-C ends the process by SIGINT (130 in a shell).
+3 not certified or no path found, 1 any other failure. Ctrl-C ends the process by SIGINT (130 in a shell).
 An output file replaces an existing one only when it is complete.)";
 
 int fail(const std::string& message, int status) {
@@ -56,6 +57,8 @@ int run(std::vector<std::string> arguments) {
     run_command_line(texts, add_commands, arguments);
     return 0;
   } catch (const NotCertified& error) {
+    return fail(error.what(), exit_not_certified);
+  } catch (const NoPath& error) {
     return fail(error.what(), exit_not_certified);
   } catch (const UsageError& error) {
     return fail(error.what(), exit_usage);

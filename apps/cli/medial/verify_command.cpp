@@ -18,6 +18,7 @@
 #include "common/summary.hpp"
 #include "medial/axis_solid.hpp"
 #include "medial/medial_report.hpp"
+#include "planning/path_check.hpp"
 
 namespace blum::cli {
 namespace {
@@ -28,15 +29,17 @@ constexpr const char* examples = R"(Examples:
   blum verify part.stl part.vtp
   blum verify part.stl part-theta20.vtp part-theta60.vtp     all axes of one run
   blum verify scan.nii.gz vessels.npz --json -
+  blum verify path.json                                      a path, with the meshes that it names
+  blum verify path.csv robot.ply walls.ply --clearance 0.01  a path of another program
 
 The checking code is independent of the construction, except for shared parts that
-docs/decisions/0007-certificate.md lists. Exit status: 0 all axes are certified, 3 at least one is not.
+docs/decisions/0007-certificate.md lists. Exit status: 0 everything is certified, 3 something is not.
 Several axes give a JSON array.)";
 
 struct Arguments {
   std::string input;
   std::vector<std::string> axes;
-  std::optional<std::string> threshold, weld, threads;
+  std::optional<std::string> threshold, weld, clearance, threads;
   std::vector<std::string> labels;
   bool smooth = false;
   ReportOptions report;
@@ -167,8 +170,24 @@ class Verifier {
   std::vector<Failure> failures_;
 };
 
+void run_path_check(const Arguments& a) {
+  PathCheck check{.path = a.input, .meshes = {a.axes.begin(), a.axes.end()}, .clearance = {}, .report = a.report};
+  refuse_given({{!a.labels.empty(), "--label"},
+                {a.threshold.has_value(), "--threshold"},
+                {a.smooth, "--smooth"},
+                {a.weld.has_value(), "--weld"}},
+               a.input, "a path", "solids");
+  if (a.clearance) check.clearance = parse_non_negative("--clearance", *a.clearance);
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  check_path(check, progress, make_context(parse_threads(a.threads), progress, interrupt));
+}
+
 void run(const Arguments& a) {
   const fs::path path = a.input;
+  if (is_path_file(path)) return run_path_check(a);
+  if (a.axes.empty()) throw UsageError("AXIS is missing: give the medial axes to check after the solid");
+  refuse_given({{a.clearance.has_value(), "--clearance"}}, path, "a solid", "paths");
   const std::vector<fs::path> axes(a.axes.begin(), a.axes.end());
   for (const fs::path& axis : axes)
     check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::read));
@@ -192,18 +211,19 @@ void run(const Arguments& a) {
 
 void add_verify_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  const Command command =
-      line.app.add_subcommand("verify", "Check medial axes against their solid, from the files alone");
-  command.add_option("INPUT", a->input, "Mesh or image of the solid").required();
-  command
-      .add_option("AXIS", a->axes,
-                  "Medial axes: " + join_words(file_extensions(FileContent::complex, FileAccess::read), "or"))
-      .required();
+  const Command command = line.app.add_subcommand(
+      "verify", "Check medial axes against their solid, or paths against their meshes, from the files alone");
+  command.add_option("INPUT", a->input, "Mesh or image of the solid; or a path: .json or .csv").required();
+  command.add_option("AXIS", a->axes,
+                     "Medial axes: " + join_words(file_extensions(FileContent::complex, FileAccess::read), "or") +
+                         "; for a path: the body, then the obstacles (default: those that the path names)");
   add_label_option(command, a->labels, "Image: select the voxels of value L (default: as recorded in AXIS)");
   add_text_option(command, "--threshold", a->threshold, "T",
                   "Image: select the voxels of value T or more (default: as recorded in AXIS)");
   command.add_flag("--smooth", a->smooth, "Image: AXIS belongs to the smooth surface (default: as recorded in AXIS)");
   add_weld_option(command, a->weld, weld_of_axis_help);
+  add_text_option(command, "--clearance", a->clearance, "C",
+                  "Path: the clearance to check, in mesh units (default: as recorded in the path, else 0)");
   add_threads_option(command, a->threads);
   add_report_options(command, a->report, "Write the certificates as JSON; - is standard output");
   command.footer(examples);
