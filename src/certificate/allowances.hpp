@@ -9,11 +9,10 @@
 
 namespace blum::verifier {
 
-/// Returns the side of a voxel that the verifier assumes, in scaled units. The side is `options.spacing`, or 1/32 of
-/// the diagonal of the solid if that is unset. The side is at most an eighth of the longest side of the solid, as on
-/// the coarsest grid. If the solid consists of voxels, the side lies between half a voxel's diagonal and the whole
-/// diagonal. The edges of the axis are not used: in the middle of round parts they are as short as the facets of the
-/// surface.
+/// Returns the side of a voxel that the verifier assumes, in scaled units. It is `options.spacing`, or 1/32 of the
+/// diagonal of the solid if that is unset. It is at most an eighth of the longest side of the solid, as on the coarsest
+/// grid. If the solid consists of voxels, it lies between half a voxel's diagonal and the whole diagonal. The edges of
+/// the axis are not used: in the middle of round parts they are as short as the facets of the surface.
 [[nodiscard]] double believed_voxel(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
 /// Returns how far vertices may have been moved by simplification, in scaled units: `options.deviation`, or 0 if it is

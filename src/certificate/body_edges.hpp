@@ -52,8 +52,7 @@ class BodyEdges {
   /// more than `allowed`, any point may be returned. A ball around a point inside, with the point's depth as radius,
   /// lies in the body. So only the parts between such balls are searched. In a thin wall these parts are many, so each
   /// part is first tested against the boundary.
-  /// @param looks  number of points that may still be examined; the function reduces it. Returns nullopt if this number
-  ///               does not suffice.
+  /// @param looks  number of points that may still be examined; it is reduced. Returns nullopt if they do not suffice.
   [[nodiscard]] std::optional<Stop> furthest_out(const Stop& a, const Stop& b, double allowed,
                                                  std::size_t& looks) const {
     constexpr double nearly = 1.25;  // only points that may be further out by this factor are searched

@@ -52,14 +52,13 @@ class ShrinkingBall {
 };
 
 /// Grows the ball that touches the wall next to p until it touches another wall. It touches the first wall at the
-/// surface point closest to p, and its centre lies on the line from this point through p. A second touching point whose
-/// separation angle is below `floor` is treated as a point of the same wall, for example beyond a shallow edge.
+/// surface point closest to p, and its centre lies on the line from this point through p. A second touching point at a
+/// separation angle below `floor` counts as the same wall, for example behind a shallow edge between facets.
 /// @param p       lies in the body, and not on its surface.
 /// @param first   the surface point closest to p.
 /// @param floor   degrees, above 0.
 /// @param more    by how much the first ball's radius exceeds the distance of p from the surface; 0: the radius is
-///                twice that distance. A small first ball may find only the same wall where a larger first ball finds
-///                another wall.
+///                twice that distance. A small first ball may find only the same wall where a larger one finds another.
 /// @return        a ball of radius 0 if nothing is touched at that angle, or if p lies on the surface.
 [[nodiscard]] TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
                                       double floor, double more = 0);
@@ -93,8 +92,7 @@ class BallDraws {
   /// @param reach_in  returns how far the surface may reach into a ball of the given radius.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, const Counts& counts, const ReachIn& reach_in) const;
-  /// Returns the ball from the k-th point as the function above does, but skips points that are further from the
-  /// surface than `most_depth`. This costs less.
+  /// Does the same, but skips points that are further from the surface than `most_depth`. This costs less.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, double most_depth, const Counts& counts,
                                    const ReachIn& reach_in) const;

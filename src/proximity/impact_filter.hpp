@@ -24,10 +24,9 @@ struct FilteredImpact {
 /// Later than any time of impact.
 inline constexpr double after_all_times = 2;
 
-/// Returns the time at which two moving features meet, if they do. The result is exact: filtered_impact() is used if it
-/// decides, otherwise integers of any size.
-/// @param before  a multiple of 2^-time_depth(options.tolerance). Returns nullopt for pairs that meet at this time or
-///                later.
+/// Returns the time at which two moving features meet, if they do. Exact: uses filtered_impact() if that decides, else
+/// integers of any size.
+/// @param before  a multiple of 2^-time_depth(options.tolerance). Returns nullopt for pairs that meet then or later.
 [[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
                                            const ImpactOptions& options, double before = after_all_times);
 

@@ -111,8 +111,7 @@ using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
 
 /// Returns the closest pair of each primitive.
 /// @param objects  number of objects in the scene.
-/// @param is_wanted  callable: returns true for primitives whose pairs are needed. All other primitives may have no
-///                   pair.
+/// @param is_wanted  callable: returns true for primitives whose pairs are needed. Others may have no pair.
 [[nodiscard]] ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                                        FunctionRef<bool(ObjectId, std::uint32_t)> is_wanted, const Context& context,
                                        ProximityReport& report);

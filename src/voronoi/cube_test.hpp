@@ -64,10 +64,9 @@ class CubeNumbers {
 };
 
 /// Decides from a cube's boundary if all components of walls and surface in the cube are acyclic (have the homology of
-/// a point). This holds if and only if H0 and H1 of each region in the cube, relative to its part of the boundary,
-/// vanish (Lefschetz duality). Each point of a region moves straight to its footprint, or to the point where this
-/// segment leaves the cube. So the region retracts to such points. For the criteria and proofs see
-/// docs/theory/voronoi.md.
+/// a point). They are if and only if H0 and H1 of each region in the cube, relative to its part of the boundary, vanish
+/// (Lefschetz duality). Each point of a region moves straight to its footprint, or to the point where this segment
+/// leaves the cube. So the region retracts to such points. For the criteria and proofs see docs/theory/voronoi.md.
 class CubeTest {
  public:
   CubeTest(const VoronoiSolid& solid, const SurfaceInCells& surface, const CellTree& tree)

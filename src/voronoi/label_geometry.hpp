@@ -203,8 +203,7 @@ class LabelGeometry {
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
   /// Returns true if one of two sites is an edge or vertex of the other site.
   [[nodiscard]] bool are_neighbours(std::uint32_t site, std::uint32_t other) const;
-  /// A vertex is thin if its dual cone is narrower than this many radians. The region of a thin vertex is treated as a
-  /// part of walls.
+  /// A vertex is thin if its dual cone is narrower than this many radians. Its region counts as a part of walls.
   static constexpr double thin = 1e-3;
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
   /// Returns true if a label is a thin vertex; false for the outside.

@@ -27,12 +27,11 @@ struct SegmentLabels {
 ///
 /// A label is excluded from a part of the segment if that part lies outside one plane of the label's domain. It is also
 /// excluded if it is further everywhere than another label that contains the feet of all points of the part. Three
-/// signs of polar forms decide if the other label is closer. A part is done if all remaining labels belong to one site.
-/// A part is also done if only two labels of different sites remain, and the order of their squared distances differs
-/// at the ends. The difference of squared distances is quadratic, so it then changes its sign exactly once. For a
-/// triangle and its own edge, or an edge and its own end, the difference is a square, without a change of sign. In that
-/// case the plane between both domains decides, and a segment crosses the plane once. A part that is not done is
-/// halved.
+/// signs of polar forms decide that. A part is done if all remaining labels belong to one site. It is also done if only
+/// two labels of different sites remain, and the order of their squared distances differs at the ends. The difference
+/// of squared distances is quadratic, so it then changes its sign exactly once. For a triangle and its own edge, or an
+/// edge and its own end, the difference is a square, without a change of sign. In that case the plane between both
+/// domains decides, and a segment crosses the plane once. A part that is not done is halved.
 ///
 /// @param among  labels that include all that are closest to a point of the segment.
 /// @param from, to  differ only along `axis`, with the smaller coordinate first. The segment lies in the solid.

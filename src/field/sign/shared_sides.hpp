@@ -13,8 +13,7 @@ namespace blum::sign {
 /// Point that is not on the surface. The point is inside if its winding number is above 1/2.
 struct SidedPoint {
   Vec3d at;
-  double distance = 0;  ///< distance from the surface, above 0. The `slack` of decide_sides() covers the error of this
-                        ///< distance.
+  double distance = 0;  ///< distance from the surface, above 0. Its error is covered by the `slack` of decide_sides().
   bool is_inside = false;
 };
 

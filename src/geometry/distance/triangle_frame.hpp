@@ -8,8 +8,7 @@
 
 namespace blum {
 
-/// If altitude / longest side is at most this, a triangle is treated as its border only, because its plane is lost in
-/// rounding.
+/// If altitude / longest side is at most this, a triangle is treated as its border only. Its plane is lost in rounding.
 inline constexpr double flat_ratio = 1e-14;
 
 /// Frame of a triangle along its longest side: corner `base`, unit vector u along that side, and unit vector v along

@@ -106,9 +106,8 @@ void check_name(std::string_view name, const char* what, const std::string& wher
 /// components is not 1 to max_file_columns.
 void add_column(Columns& columns, Column column, const std::string& where);
 
-/// Returns columns in which row i is repeated counts[i] times. The function is used for cells of files that become
-/// several cells.
-/// @param file_size  size of the file in bytes. The size of the file limits the size of the copies.
+/// Returns columns in which row i is repeated counts[i] times. This is for cells of files that become several cells.
+/// @param file_size  size of the file in bytes. It limits the size of the copies.
 /// @throws FormatError with `where` if the copies would be many times as large as the file.
 [[nodiscard]] Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, std::uint64_t file_size,
                                const std::string& where);

@@ -22,11 +22,10 @@ struct FitTarget {
 };
 
 /// Moves the borders of the sheets of an axis, which so far follow the cells of a lattice, to their exact positions.
-/// Seams move to positions that are equally far from three walls, and junctions to positions that are equally far from
-/// four walls. Rims, and ends of seams and curves, move to where the separation angle is theta or the radius 1/50 of a
-/// voxel. Cells beyond these borders are removed first (trim()). If two adjacent vertices move to the same point, the
-/// edge between them is contracted, so that ribbons without width become curves. All steps keep the homotopy type, and
-/// keep edges in the solid.
+/// Seams move to where three walls are equally far, junctions to where four are. Rims, and ends of seams and curves,
+/// move to where the separation angle is theta or the radius 1/50 of a voxel. Cells beyond these borders are removed
+/// first (trim()). If two adjacent vertices move to the same point, the edge between them is contracted, so that
+/// ribbons without width become curves. All steps keep the homotopy type, and keep edges in the solid.
 /// @param lists  the axis of one body.
 /// @return       mesh units: greatest distance that thin_insides() moved sheets.
 /// @throws Cancelled. Cost: linear in the number of vertices that move, about 0.1 ms for each.

@@ -26,7 +26,8 @@ struct EdgePair {
   std::uint32_t apex_left = 0, apex_right = 0;
 };
 
-/// A closed, oriented, manifold surface. Triangles keep their indices when vertices are removed and edges are flipped.
+/// A closed, oriented, manifold surface.
+/// Triangles keep their indices when vertices are removed and edges are flipped.
 class ShrinkingSurface {
  public:
   /// @param mesh  closed, oriented and manifold. Its vertices must stay valid and unchanged.

@@ -11,8 +11,7 @@
 
 namespace blum::voronoi {
 
-/// Points of a curve in planes at right angles to one direction, at Chebyshev nodes of an interval along this
-/// direction.
+/// Points of a curve in planes at right angles to one direction, at Chebyshev nodes of the way along it.
 struct CurveSamples {
   static constexpr std::size_t count = 9;
   double length = 0;  ///< of the way, mesh units

@@ -107,9 +107,8 @@ class SeamTracer {
   /// Returns a lower bound on how much further a site is than the radius.
   /// @param beyond  sites_.outside(site, x)
   [[nodiscard]] double gap_to(TracedSites::Index site, const Vec3d& x, double beyond, double radius) const;
-  /// Returns the path length before which an edge stays further than those of the curve's edges that meet it at a
-  /// vertex.
-  /// @param way_to_zero  (value, slope): the path length before which a linear function stays above 0.
+  /// Returns the way before which an edge stays further than those of the curve's edges that meet it at a vertex.
+  /// @param way_to_zero  (value, slope): the way before which a linear function stays above 0.
   template <class WayToZero>
   [[nodiscard]] double way_past_edges(const TracedCurve& curve, TracedSites::Index site, const Vec3d& x,
                                       const WayToZero& way_to_zero) const;

@@ -64,8 +64,7 @@ struct BorderEdge {
 
 /// Treatment of junctions and seams that are nearly at the same position.
 enum class TracedPlaces : std::uint8_t {
-  merged,   ///< Junctions and seams closer than the tolerance are merged. Symmetric solids have such junctions and
-            ///< seams.
+  merged,   ///< Junctions and seams closer than the tolerance are one. Symmetric solids have such ones.
   separate  ///< Only rounding of numbers is treated as 0. Vertices move so that joined faces are flat.
 };
 
