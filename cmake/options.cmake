@@ -74,6 +74,8 @@ if(BLUM_OMPL)
   if(NOT OMPL_LIBRARIES OR NOT BLUM_EIGEN_DIR)
     message(STATUS "OMPL was not found: plan_path() and `blum plan` report an error")
   else()
+    # The library itself; the list has libraries of its own, of which no headers are needed.
+    list(GET OMPL_LIBRARIES 0 BLUM_OMPL_LIBRARY)
     set(BLUM_HAS_OMPL ON)
   endif()
 endif()

@@ -67,8 +67,7 @@ class CertifiedMotions final : public ob::MotionValidator {
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     return count(search_.free_until(poses_.pose(from), poses_.pose(to)) == 1);
   }
-  bool checkMotion(const ob::State* from, const ob::State* to,
-                   std::pair<ob::State*, double>& last) const override {
+  bool checkMotion(const ob::State* from, const ob::State* to, std::pair<ob::State*, double>& last) const override {
     const double until = search_.free_until(poses_.pose(from), poses_.pose(to));
     if (until == 1) return count(true);
     last.second = until;
@@ -85,12 +84,15 @@ class CertifiedMotions final : public ob::MotionValidator {
   const Poses& poses_;
 };
 
-/// Samples of which some are in narrow passages: in the middle of two random states that are not free (the bridge test
-/// of Hsu, Jiang, Reif and Sun 2003).
+/// Random states, some of them in narrow passages. A bridge is a pair of near states that are not free. If its middle
+/// is free, it is such a state (Hsu, Jiang, Reif and Sun 2003).
 class BridgeSampler final : public ob::StateSampler {
  public:
   BridgeSampler(const ob::StateSpace* space, const ob::SpaceInformation* information, double width)
-      : ob::StateSampler(space), uniform_(space->allocDefaultStateSampler()), information_(information), width_(width) {}
+      : ob::StateSampler(space),
+        uniform_(space->allocDefaultStateSampler()),
+        information_(information),
+        width_(width) {}
 
   void sampleUniform(ob::State* state) override {
     constexpr double share = 0.2;
@@ -127,11 +129,16 @@ class BridgeSampler final : public ob::StateSampler {
 
 ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& information, PathPlanner planner) {
   switch (planner) {
-    case PathPlanner::rrt: return std::make_shared<og::RRT>(information);
-    case PathPlanner::prm: return std::make_shared<og::PRM>(information);
-    case PathPlanner::lbkpiece: return std::make_shared<og::LBKPIECE1>(information);
-    case PathPlanner::rrt_star: return std::make_shared<og::RRTstar>(information);
-    case PathPlanner::rrt_connect: break;
+    case PathPlanner::rrt:
+      return std::make_shared<og::RRT>(information);
+    case PathPlanner::prm:
+      return std::make_shared<og::PRM>(information);
+    case PathPlanner::lbkpiece:
+      return std::make_shared<og::LBKPIECE1>(information);
+    case PathPlanner::rrt_star:
+      return std::make_shared<og::RRTstar>(information);
+    case PathPlanner::rrt_connect:
+      break;
   }
   return std::make_shared<og::RRTConnect>(information);
 }
@@ -167,9 +174,8 @@ FoundPath search_path(const PathSearch& search) {
     return search.free_until(pose, pose) == 1;
   });
   information->setMotionValidator(std::make_shared<CertifiedMotions>(information, search, poses));
-  space->setStateSamplerAllocator([&](const ob::StateSpace* of) {
-    return std::make_shared<BridgeSampler>(of, information.get(), search.size);
-  });
+  space->setStateSamplerAllocator(
+      [&](const ob::StateSpace* of) { return std::make_shared<BridgeSampler>(of, information.get(), search.size); });
   ob::ScopedState<ob::SE3StateSpace> start(space), goal(space);
   poses.set(start.get(), search.start);
   poses.set(goal.get(), search.goal);

@@ -100,7 +100,8 @@ class Planner {
     double slice = bodies() == 1 ? options_.time : std::min(0.5, options_.time / static_cast<double>(2 * bodies()));
     while (!waiting.empty() && left() > 0) {
       const std::size_t before = waiting.size();
-      std::erase_if(waiting, [&](std::size_t body) { return left() > 0 && moves_to_goal(body, std::min(slice, left())); });
+      std::erase_if(waiting,
+                    [&](std::size_t body) { return left() > 0 && moves_to_goal(body, std::min(slice, left())); });
       if (waiting.size() == before) slice *= 2;
     }
     throw_if_cancelled(context_);
@@ -118,8 +119,8 @@ class Planner {
   void check_problem() const {
     if (!has_path_planner()) {
       throw InvalidOption(
-          "planning needs OMPL, which this build does not contain; install libompl-dev and build again with "
-          "-DBLUM_OMPL=ON, or use blum.plan() of the Python package with pip install ompl");
+          "this build contains no search for paths; install libompl-dev and build again with -DBLUM_OMPL=ON, or use "
+          "blum.plan() of the Python package");
     }
     if (problem_.start.size() != bodies() || problem_.goal.size() != bodies()) {
       throw InvalidOption("plan: there are " + std::to_string(problem_.start.size()) + " starts and " +
@@ -144,16 +145,17 @@ class Planner {
   void check_pose(const std::vector<RigidTransform>& poses, const std::string& name) const {
     std::vector<RigidMotion> rest;
     for (std::size_t k = 0; k < bodies(); ++k) rest.emplace_back(poses[k], poses[k], centres_[k]);
-    const CertifiedMotion found = certifier_.certify(rest, {.clearance = options_.clearance, .delta = delta_}, context_);
+    const CertifiedMotion found =
+        certifier_.certify(rest, {.clearance = options_.clearance, .delta = delta_}, context_);
     if (found.verdict == MotionVerdict::free) return;
     const MotionPair& pair = *found.closest;
     const std::string other = pair.obstacle ? "obstacle " + std::to_string(*pair.obstacle)
                                             : "body " + std::to_string(pair.other_body.value_or(0));
     throw InvalidOption("plan: at the " + name + ", body " + std::to_string(pair.body) + " " +
-                        (pair.distance == 0 ? "meets " + other
-                                            : "is closer to " + other + " than the clearance of " +
-                                                  exact_text(options_.clearance) + ": their distance is " +
-                                                  exact_text(pair.distance)) +
+                        (pair.distance == 0
+                             ? "meets " + other
+                             : "is closer to " + other + " than the clearance of " + exact_text(options_.clearance) +
+                                   ": their distance is " + exact_text(pair.distance)) +
                         " at " + place_text(pair.on_body) + "; choose another " + name);
   }
 
@@ -202,8 +204,8 @@ class Planner {
   /// Searches for a path of one body to its goal. If there is one, the body moves along it.
   bool moves_to_goal(std::size_t body, double time) {
     const MotionOptions wanted{.clearance = options_.clearance, .delta = delta_};
-    const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                     std::chrono::duration<double>(time));
+    const Clock::time_point end =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time));
     const auto free_until = [&](const RigidTransform& from, const RigidTransform& to) {
       return certifier_.certify(motions(body, from, to), wanted).free_until;
     };

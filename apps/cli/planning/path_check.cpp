@@ -96,8 +96,7 @@ void check_path(const PathCheck& check, Progress& progress, const Context& conte
   TextTable table;
   table.add("path", std::string(certificate.holds ? "certified: " : "NOT certified: ") +
                         plural(certificate.edges, "motion", "motions") + " of " +
-                        plural(bodies.size(), "body", "bodies") + ", clearance " +
-                        rounded_text(certificate.clearance));
+                        plural(bodies.size(), "body", "bodies") + ", clearance " + rounded_text(certificate.clearance));
   table.detail("tests", count_text(certificate.tests) + " times at which distances were compared");
   Json facts = {{"input", {{"file", check.path.string()}, {"bodies", bodies.size()}, {"obstacles", obstacles.size()}}},
                 {"path", to_json(certificate)}};

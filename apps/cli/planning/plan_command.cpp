@@ -56,15 +56,16 @@ RigidTransform parse_pose(const std::string& option, const std::string& text) {
     if (comma == rest.size()) break;
     rest.remove_prefix(comma + 1);
   }
-  if (count != numbers.size()) throw UsageError(option + " is '" + text + "', but needs seven numbers x,y,z,qw,qx,qy,qz");
+  if (count != numbers.size())
+    throw UsageError(option + " is '" + text + "', but needs seven numbers x,y,z,qw,qx,qy,qz");
   return pose_of(numbers);
 }
 
 std::vector<RigidTransform> parse_poses(const std::string& option, const std::vector<std::string>& texts,
                                         std::size_t bodies) {
   if (texts.size() != bodies) {
-    throw UsageError(option + " is given " + std::to_string(texts.size()) + " times, but must be given once for each of " +
-                     plural(bodies, "body", "bodies"));
+    throw UsageError(option + " is given " + std::to_string(texts.size()) +
+                     " times, but must be given once for each of " + plural(bodies, "body", "bodies"));
   }
   std::vector<RigidTransform> out;
   for (const std::string& text : texts) out.push_back(parse_pose(option, text));
@@ -102,7 +103,8 @@ PathFile path_file(const PlannedPath& found, const Meshes& bodies, const Meshes&
 }
 
 std::string pair_text(const MotionPair& pair, const Meshes& bodies, const Meshes& obstacles) {
-  const std::string& other = pair.obstacle ? obstacles.files[*pair.obstacle] : bodies.files[pair.other_body.value_or(0)];
+  const std::string& other =
+      pair.obstacle ? obstacles.files[*pair.obstacle] : bodies.files[pair.other_body.value_or(0)];
   return "'" + bodies.files[pair.body] + "' and '" + other + "'";
 }
 
@@ -130,9 +132,10 @@ void run(const Arguments& a) {
   if (found.is_found && a.output) write_path(*a.output, path_file(found, bodies, obstacles, *a.output), context);
   progress.clear();
   TextTable table;
-  Json facts = {{"bodies", body_files}, {"obstacles", a.obstacles}, {"found", found.is_found},
-                {"planner", std::string(to_string(options.planner))}, {"seed", options.seed},
-                {"seconds", found.seconds}, {"states", found.states}};
+  Json facts = {{"bodies", body_files},    {"obstacles", a.obstacles},
+                {"found", found.is_found}, {"planner", std::string(to_string(options.planner))},
+                {"seed", options.seed},    {"seconds", found.seconds},
+                {"states", found.states}};
   if (found.is_found) {
     const CertifiedPath& proof = found.proof;
     table.add("path", "proven: " + plural(found.path.edges(), "motion", "motions") + ", clearance at least " +

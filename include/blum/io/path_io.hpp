@@ -45,8 +45,8 @@ struct PathFile {
 /// @throws InvalidOption unless the extension is `.json`; FileError.
 void write_path(const std::filesystem::path& path, const PathFile& file, const Context& context = {});
 
-/// Reads a path file: `.json` as write_path() writes it, or `.csv` with a row x, y, z, qw, qx, qy, qz for each waypoint
-/// of one body. A first row without numbers is ignored.
+/// Reads a path file. A `.json` file is as write_path() writes it. A `.csv` file has a row x, y, z, qw, qx, qy, qz for
+/// each waypoint of one body. A first row without numbers is ignored.
 /// @throws FormatError with the place of the error; InvalidOption for another extension; FileError.
 [[nodiscard]] PathFile read_path(const std::filesystem::path& path);
 

@@ -31,10 +31,10 @@ enum class PathPlanner : std::uint8_t {
 template <>
 struct Description<PathPlanner> {
   static constexpr std::string_view name = "PathPlanner";
-  static constexpr std::array values{
-      NamedValue{PathPlanner::rrt_connect, "rrt_connect"}, NamedValue{PathPlanner::rrt, "rrt"},
-      NamedValue{PathPlanner::prm, "prm"}, NamedValue{PathPlanner::lbkpiece, "lbkpiece"},
-      NamedValue{PathPlanner::rrt_star, "rrt_star"}};
+  static constexpr std::array values{NamedValue{PathPlanner::rrt_connect, "rrt_connect"},
+                                     NamedValue{PathPlanner::rrt, "rrt"}, NamedValue{PathPlanner::prm, "prm"},
+                                     NamedValue{PathPlanner::lbkpiece, "lbkpiece"},
+                                     NamedValue{PathPlanner::rrt_star, "rrt_star"}};
 };
 
 struct PlanOptions {
@@ -79,11 +79,11 @@ struct PlanProblem {
 
 struct PlannedPath {
   bool is_found = false;
-  MotionPath path;              ///< If found: the path. Otherwise empty.
-  CertifiedPath proof;          ///< If found: the proof of the whole path.
+  MotionPath path;                 ///< If found: the path. Otherwise empty.
+  CertifiedPath proof;             ///< If found: the proof of the whole path.
   std::vector<std::size_t> order;  ///< Several bodies: the order in which they moved to their goals.
-  std::size_t states = 0;       ///< States in the trees or roadmaps of all searches.
-  double seconds = 0;           ///< Time of the search.
+  std::size_t states = 0;          ///< States in the trees or roadmaps of all searches.
+  double seconds = 0;              ///< Time of the search.
 };
 
 /// Returns true if this build contains OMPL, which plan_path() needs.
@@ -95,10 +95,10 @@ struct PlannedPath {
 ///
 /// Several bodies move one after the other. The order is found by trying all bodies that have not reached their goals.
 ///
-/// Equal seeds give equal paths, if the search ends before its time and is the first one of the process: all searches
-/// share the random numbers of OMPL. The planner rrt_star uses all of the time, so its paths may differ.
-/// @throws InvalidOption if a start or goal is closer to another object than the clearance, or is inside the solid of a
-/// closed obstacle; the message contains the place. It is also thrown for options out of range, and if OMPL is missing.
+/// The first search of a process gives equal paths for equal seeds, if it ends before its time. Later searches may
+/// differ, because all searches share the random numbers of OMPL. Searches of the planner rrt_star may always differ.
+/// @throws InvalidOption if a body is too close to another object at its start or goal, or is inside the solid of a
+/// closed obstacle. The message contains the position. It is also thrown for options out of range, and without OMPL.
 /// @throws InvalidMesh; Cancelled. Progress is the share of the time that has passed.
 [[nodiscard]] PlannedPath plan_path(const PlanProblem& problem, const PlanOptions& options = {},
                                     const Context& context = {});

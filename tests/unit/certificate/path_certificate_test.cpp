@@ -1,5 +1,5 @@
-// Proves that the check of paths certifies paths that keep their clearance, and refuses lies: poses that are moved,
-// clearances that are raised, intervals that are left out, and other obstacles.
+// Proves that verify_path() certifies paths that keep their clearance. It refuses files with moved poses, raised
+// clearances, missing intervals or other obstacles.
 #include "blum/certificate/path_certificate.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Proves that paths that are found keep their clearance at many poses, go around walls that samples would jump over,
-// and that problems without a solution end in time. Without OMPL, the search reports how to get it.
+// Proves that found paths keep their clearance at many poses, and go around walls that samples would jump over.
+// Searches without a solution end in time. Without OMPL, the search reports how to get it.
 #include "blum/planning/plan.hpp"
 
 #include <gtest/gtest.h>
@@ -81,10 +81,10 @@ Task through_a_window() {
   return out;
 }
 
-#define BLUM_NEEDS_OMPL()                                                                 \
-  if (!has_path_planner()) {                                                              \
-    EXPECT_THROW(static_cast<void>(through_a_window().planned({})), InvalidOption);       \
-    return;                                                                               \
+#define BLUM_NEEDS_OMPL()                                                           \
+  if (!has_path_planner()) {                                                        \
+    EXPECT_THROW(static_cast<void>(through_a_window().planned({})), InvalidOption); \
+    return;                                                                         \
   }
 
 TEST(Plan, TurnsABarThroughAWindow) {
@@ -108,12 +108,12 @@ TEST(Plan, EndsInTimeIfThereIsNoPath) {
 /// The inner part can only leave after the lid.
 TEST(Plan, TakesPartsOutInAnOrderThatIsFound) {
   BLUM_NEEDS_OMPL();
-  const Task task{.bodies = {box({0.5, 0.5, 0.5}), box({1.6, 1.6, 0.2}, {0, 0, 0})},
-                  .obstacles = {box({2, 2, 0.2}, {0, 0, -1}), box({0.2, 2, 1.6}, {1, 0, 0}),
-                                box({0.2, 2, 1.6}, {-1, 0, 0}), box({2, 0.2, 1.6}, {0, 1, 0}),
-                                box({2, 0.2, 1.6}, {0, -1, 0})},
-                  .start = {moved({0, 0, -0.4}), moved({0, 0, 0.5})},
-                  .goal = {moved({3, 0, 2}), moved({-4, 0, 2})}};
+  const Task task{
+      .bodies = {box({0.5, 0.5, 0.5}), box({1.6, 1.6, 0.2}, {0, 0, 0})},
+      .obstacles = {box({2, 2, 0.2}, {0, 0, -1}), box({0.2, 2, 1.6}, {1, 0, 0}), box({0.2, 2, 1.6}, {-1, 0, 0}),
+                    box({2, 0.2, 1.6}, {0, 1, 0}), box({2, 0.2, 1.6}, {0, -1, 0})},
+      .start = {moved({0, 0, -0.4}), moved({0, 0, 0.5})},
+      .goal = {moved({3, 0, 2}), moved({-4, 0, 2})}};
   const PlannedPath found = task.planned({.time = 20});
   task.expect_proven(found, 0, 40);
   EXPECT_EQ(found.order, (std::vector<std::size_t>{1, 0}));
@@ -129,7 +129,10 @@ TEST(Plan, NamesWhatIsWrongWithStartAndGoal) {
     }
     return "no error";
   };
-  Task task{.bodies = {box({1, 1, 1})}, .obstacles = {box({1, 1, 1}, {5, 0, 0})}, .start = {moved({})}, .goal = {moved({9, 0, 0})}};
+  Task task{.bodies = {box({1, 1, 1})},
+            .obstacles = {box({1, 1, 1}, {5, 0, 0})},
+            .start = {moved({})},
+            .goal = {moved({9, 0, 0})}};
   task.goal = {moved({4.5, 0, 0})};
   EXPECT_NE(error_of(task).find("at the goal, body 0 meets obstacle 0"), std::string::npos) << error_of(task);
   task.goal = {moved({9, 0, 0})};

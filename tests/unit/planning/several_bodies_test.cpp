@@ -1,5 +1,5 @@
-// Proves that answers about several moving bodies, first contacts, bounds of clearances and paths hold: they are
-// compared with exhaustive distances at many times, and with contacts that are known exactly.
+// Proves answers about several moving bodies, first contacts, clearances and paths. The tests compare them with
+// exhaustive distances at many times, and with contacts that are known exactly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
