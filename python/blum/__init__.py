@@ -31,6 +31,7 @@ from . import (
     _medial_complex,
     _mesh,
     _methods,
+    _plan,
     _planning,
     _points,
     _proximity,
@@ -71,6 +72,7 @@ from ._medial import *
 from ._medial_columns import *
 from ._medial_complex import *
 from ._mesh import *
+from ._plan import *
 from ._planning import *
 from ._points import *
 from ._proximity import *
@@ -111,6 +113,7 @@ __all__ += _medial.__all__
 __all__ += _medial_columns.__all__
 __all__ += _medial_complex.__all__
 __all__ += _mesh.__all__
+__all__ += _plan.__all__
 __all__ += _planning.__all__
 __all__ += _points.__all__
 __all__ += _proximity.__all__

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Unpack
 
 from . import _core
-from ._arguments import integer, triple
+from ._arguments import FloatArray, integer, triple
 from ._mesh import MeshLike, as_mesh
 from ._options import takes
 from ._rigid import as_place
@@ -64,7 +64,13 @@ class MotionCertifier:
         **options
         """
         x, y, z = self._certifier.centre() if centre is None else triple(centre, "centre")
-        found: CertifiedMotion = self._certifier.certify(as_place(start), as_place(goal), x, y, z, dict(options))
+        return self._certify(as_place(start), as_place(goal), (x, y, z), dict(options))
+
+    def _certify(
+        self, start: FloatArray, goal: FloatArray, centre: tuple[float, float, float], options: dict[str, Any]
+    ) -> CertifiedMotion:
+        """Certifies a motion between poses (3, 4). Planners call it for each edge, so it checks no types."""
+        found: CertifiedMotion = self._certifier.certify(start, goal, *centre, options)
         return found
 
 

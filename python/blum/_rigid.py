@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -78,3 +79,58 @@ def as_places(transforms: Any) -> FloatArray:
             f"the last row of transforms[{worst}] is {rows[worst, 3].tolist()}, but must be [0, 0, 0, 1]"
         )
     return np.ascontiguousarray(rows, dtype=np.float64)
+
+
+def rotation_of(w: float, x: float, y: float, z: float) -> tuple[tuple[float, float, float], ...]:
+    """Returns the rows of the rotation matrix of a quaternion of any length above 0."""
+    s = 2 / (w * w + x * x + y * y + z * z)
+    return (
+        (1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)),
+        (s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)),
+        (s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)),
+    )
+
+
+def quaternion_of(rotation: FloatArray) -> tuple[float, float, float, float]:
+    """Returns the unit quaternion (w, x, y, z) of a rotation matrix, with its largest entry positive."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation.tolist()
+    squares = 1 + a + e + i, 1 + a - e - i, 1 - a + e - i, 1 - a - e + i
+    products = (
+        (squares[0], h - f, c - g, d - b),
+        (h - f, squares[1], b + d, c + g),
+        (c - g, b + d, squares[2], f + h),
+        (d - b, c + g, f + h, squares[3]),
+    )
+    row = products[max(range(4), key=squares.__getitem__)]
+    size = math.sqrt(sum(value * value for value in row))
+    w, x, y, z = (value / size for value in row)
+    return w, x, y, z
+
+
+def as_pose(value: Any, name: str) -> FloatArray:
+    """Returns a pose as (3, 4), with the closest rotation. It may also be given as x, y, z, qw, qx, qy, qz."""
+    if not isinstance(value, (tuple, list)) or len(value) == 7:
+        rows = _real(value, name)
+        if rows.shape == (7,):
+            return _pose_of_seven(rows.astype(np.float64), name)
+    try:
+        pose = as_place(value)
+        pose[:, :3] = closest_rotation(pose[:, :3])
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name}: {error}") from None
+    if not np.isfinite(pose).all():
+        raise InvalidOption(f"{name} is not finite")
+    return pose
+
+
+def _pose_of_seven(row: FloatArray, name: str) -> FloatArray:
+    """Returns the pose of x, y, z and a quaternion."""
+    if not np.isfinite(row).all():
+        raise InvalidOption(f"{name} is {row.tolist()}, but must be finite")
+    length = float(np.linalg.norm(row[3:]))
+    if abs(length - 1) > 1e-3:
+        raise InvalidOption(f"{name}: the quaternion {row[3:].tolist()} has the length {length:.6g}, but must have 1")
+    out: FloatArray = np.empty((3, 4))
+    out[:, :3] = rotation_of(*(row[3:] / length).tolist())
+    out[:, 3] = row[:3]
+    return out
