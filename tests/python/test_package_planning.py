@@ -67,8 +67,53 @@ def test_points_and_default_centre():
     certifier = blum.MotionCertifier(box, box)
     found = certifier.certify((identity, (-3, 0, 0)), (identity, (-1.25, 0, 0)), clearance=0.5)
     assert found.verdict == "too_close" and np.isclose(found.free_until, 1.5 / 1.75, atol=1e-5)
-    assert np.allclose([found.closest.on_body[0], found.closest.on_obstacle[0]], [-1.0, -0.5], atol=1e-5)
+    assert np.allclose([found.closest.on_body[0], found.closest.on_other[0]], [-1.0, -0.5], atol=1e-5)
     assert certifier.certify((identity, (-3, 0, 0)), (identity, (-1.25, 0, 0)), clearance=0.2).verdict == "free"
+
+
+def test_several_bodies_and_given_motions():
+    """Bodies of a list move at once. A motion along given poses is that between them, if the poses are the same."""
+    box, identity = blum.generate("box"), np.eye(3)
+    certifier = blum.MotionCertifier([box, box], [])
+    apart = [(identity, (-3, 0, 0)), (identity, (3, 0, 0))]
+    swapped = [(identity, (3, 0, 0)), (identity, (-3, 0, 0))]
+    assert len(certifier) == 2
+    assert certifier.certify(apart, apart).verdict == "free"
+    met = certifier.certify(apart, swapped)
+    assert met.verdict == "colliding" and np.isclose(met.free_until, 5 / 12, atol=1e-5)
+    assert (met.closest.body, met.closest.other_body, met.closest.obstacle) == (0, 1, None)
+    contact = certifier.first_contact(apart, swapped)
+    assert contact.earliest <= 5 / 12 <= contact.latest + 1e-12 and contact.latest - contact.earliest < 1e-8
+
+    def poses_at(time):
+        return np.stack([np.c_[identity, [6 * time - 3, 0, 0]], np.c_[identity, [3 - 6 * time, 0, 0]]])
+
+    given = certifier.certify_poses(poses_at, [6, 6])
+    assert given.verdict == "colliding" and np.isclose(given.free_until, 5 / 12, atol=1e-5)
+    certifier.exclude(0, 1)
+    assert certifier.certify(apart, swapped).verdict == "free"
+    with pytest.raises(ZeroDivisionError):
+        certifier.certify_poses(lambda time: 1 / 0, [6, 6])
+    with pytest.raises(blum.InvalidOption, match="2 bodies"):
+        certifier.certify(apart[:1], apart[:1])
+
+
+def test_clearances_and_paths_hold():
+    box, identity = blum.generate("box"), np.eye(3)
+    certifier = blum.MotionCertifier(box, box)
+    places = [(-4, 0, 0), (0, 2, 0), (4, 0, 0)]
+    proof = certifier.certify_path([(identity, place) for place in places], clearance=0.2, tolerance=0.01)
+    samples = [(identity, (1 - t) * np.array(a) + t * np.array(b)) for a, b in zip(places, places[1:], strict=False)
+               for t in np.linspace(0, 1, 50)]
+    least = distances(box, box, samples).min()
+    assert proof.verdict == "free" and proof.at_least <= least <= 1.02 * proof.at_least
+    assert min(part.clearance for part in proof.intervals) == proof.at_least
+    for edge in range(2):
+        parts = [part for part in proof.intervals if part.edge == edge]
+        assert parts[0].start == 0 and parts[-1].end == 1
+        assert all(a.end == b.start for a, b in zip(parts, parts[1:], strict=False))
+    one = certifier.clearance((identity, places[0]), (identity, places[1]), tolerance=0.01)
+    assert one.at_least <= distances(box, box, samples[:50]).min() <= 1.02 * one.at_least
 
 
 def test_wrong_arguments_are_named():

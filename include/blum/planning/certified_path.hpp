@@ -46,6 +46,18 @@ struct PathInterval {
   double clearance = 0;  ///< From `from` to `to`, the surfaces are at least this far apart, mesh units.
 };
 
+template <>
+struct Description<PathInterval> {
+  static constexpr std::string_view name = "PathInterval";
+  static constexpr std::string_view doc = "Part of a path, with a lower bound of the distance between surfaces";
+  static constexpr std::tuple members{
+      Member{"edge", &PathInterval::edge, "", "number of the motion between two waypoints"},
+      Member{"start", &PathInterval::from, "", "first time of the part, 0 to 1"},
+      Member{"end", &PathInterval::to, "", "last time of the part, 0 to 1"},
+      Member{"clearance", &PathInterval::clearance, "mesh units", "the surfaces are at least this far apart"},
+  };
+};
+
 struct PathOptions {
   double clearance = 0;  ///< The surfaces must stay further apart than this distance, >= 0, mesh units.
   /// A path that comes closer than the clearance plus this distance may be too close, > 0, mesh units. If not given,
@@ -96,6 +108,7 @@ struct Description<CertifiedPath> {
              "motion with the narrowest place; if not free: the first motion that is not free"},
       Member{"time", &CertifiedPath::time, "", "time of this motion, 0 to 1"},
       Member{"closest", &CertifiedPath::closest, "", "closest pair at this time"},
+      Member{"intervals", &CertifiedPath::intervals, "", "if free: the proof; the parts of each motion cover 0 to 1"},
       Member{"tests", &CertifiedPath::tests, "", "comparisons of two objects at a time"},
   };
 };
