@@ -50,8 +50,8 @@ class MovingBody:
         vertices = self.body.vertices
         lower, upper = vertices.min(axis=0), vertices.max(axis=0)
         self.centre = triple((lower + upper) / 2 if centre is None else centre, "centre")
-        #: Largest distance of a point of the body from the centre, mesh units.
-        self.radius = float(np.linalg.norm(vertices - self.centre, axis=1).max())
+        #: Largest distance of a point of the body from the centre, mesh units. A single point counts as a small body.
+        self.radius = float(np.linalg.norm(vertices - self.centre, axis=1).max()) or 1e-3
         size = float(np.linalg.norm(upper - lower))
         self.clearance = number(clearance, "clearance")
         self.delta = number(delta, "delta") if delta is not None else 1e-4 * size if size > 0 else 1e-9

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import itertools
 import time as clock
+import warnings
 from dataclasses import dataclass
 from typing import Any, Literal, cast, get_args
 
@@ -12,15 +13,16 @@ import numpy as np
 
 from ._arguments import FloatArray, Integer, Real, integer, number
 from ._closest import winding_number
-from ._errors import InvalidOption
+from ._errors import InputWarning, InvalidOption
 from ._mesh import Mesh, MeshLike, topology
 from ._methods import Shown
 from ._moving_body import MovingBody, between
 from ._rigid import as_pose
+from ._sliding_planner import search as sliding_search
 
 __all__ = ["PlannedPath", "plan"]
 
-_Planner = Literal["rrt_connect", "rrt", "prm", "kpiece", "bkpiece", "lbkpiece", "rrt_star", "bit_star"]
+_Planner = Literal["sliding", "rrt_connect", "rrt", "prm", "kpiece", "bkpiece", "lbkpiece", "rrt_star", "bit_star"]
 _CLASSES = {
     "rrt_connect": "RRTConnect",
     "rrt": "RRT",
@@ -32,6 +34,7 @@ _CLASSES = {
     "bit_star": "BITstar",
 }
 _PER_MOTION = 20  # Shortcuts that are tried for each motion of a path.
+_TESTS = 20000  # Tests of distances for shortcuts. Counts do not depend on the machine, unlike seconds.
 
 
 @dataclass(frozen=True, repr=False)
@@ -95,7 +98,8 @@ def plan(
 ) -> PlannedPath:
     """Searches for a path of a rigid body among obstacles. Every motion of the path is proven free, not only samples.
 
-    OMPL searches (``pip install ompl``). If it finds no path in time, the result says so. This does not prove that
+    OMPL searches (``pip install ompl``). The planner "sliding" needs no OMPL: its trees slide along the obstacles, and
+    begin also in narrow gaps between them. If no path is found in time, the result says so. This does not prove that
     there is none.
 
     Equal arguments give the same path, if the search ends before its time. The planners "rrt_star" and "bit_star" use
@@ -120,7 +124,7 @@ def plan(
     seed : int
         0 to 2^32 - 2.
     planner : str
-        Planner of OMPL.
+        "sliding", or a planner of OMPL.
     rotate : bool
         False: the body only translates. Start and goal must have the same rotation.
     allow_inside : bool
@@ -152,13 +156,17 @@ def plan(
     ends = as_pose(start, "start"), as_pose(goal, "goal")
     if not rotate and np.abs(ends[0][:, :3] - ends[1][:, :3]).max() > 1e-9:
         raise InvalidOption("start and goal have different rotations, but rotate=False")
-    ompl = importlib.import_module("blum.ompl")
+    ompl = None if planner == "sliding" else importlib.import_module("blum.ompl")
     kept = None if rotate else ends[0][:, :3]
-    moving = ompl.RigidBody(body, obstacles, clearance=clearance, delta=delta, rotation=kept, threads=threads)
+    kind = MovingBody if ompl is None else ompl.RigidBody
+    moving = kind(body, obstacles, clearance=clearance, delta=delta, rotation=kept, threads=threads)
     for name, pose in zip(("start", "goal"), ends, strict=True):
         _check_end(moving, pose, name, allow_inside)
     corners = _bounds_with_ends(moving, ends, bounds)
-    poses, states, nearest = ompl.search(moving, ends, corners, limit, chosen, _CLASSES[planner])
+    if ompl is None:
+        poses, states, nearest = sliding_search(moving, ends, corners, limit, chosen)
+    else:
+        poses, states, nearest = ompl.search(moving, ends, corners, limit, chosen, _CLASSES[planner])
     found = _proven_path(moving, poses, chosen)
     reason = "" if len(found) else f"no path was found in {limit:g} seconds; {nearest}"
     places = np.array([moving.place(pose) for pose in found]).reshape(-1, 3)
@@ -202,7 +210,9 @@ def _first_inside(mesh: Mesh, points: FloatArray) -> FloatArray | None:
     """Returns the first of some points that is inside a mesh, or None. A mesh that is not closed has no inside."""
     if len(mesh.triangles) == 0 or not topology(mesh).closed:
         return None
-    inside = np.flatnonzero(np.abs(winding_number(mesh, points)) > 0.5)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        inside = np.flatnonzero(np.abs(winding_number(mesh, points)) > 0.5)
     return points[inside[0]] if len(inside) else None
 
 
@@ -242,8 +252,10 @@ def _shortened(moving: MovingBody, poses: FloatArray, random: np.random.Generato
 
     A try replaces the part between two random places of the path by one motion. Half of the places are poses of it.
     """
-    path = list(poses)
+    path, tests = list(poses), 0
     for _ in range(_PER_MOTION * max(len(poses) - 1, 0)):
+        if tests > _TESTS:
+            break
         times = np.sort(random.uniform(0, len(path) - 1, 2))
         if random.random() < 0.5:
             times = np.rint(times)
@@ -254,7 +266,9 @@ def _shortened(moving: MovingBody, poses: FloatArray, random: np.random.Generato
         new = _without_rests(moving, [path[i], a, b, path[j + 1]])
         if _way(moving, new) >= (1 - 1e-6) * _way(moving, path[i : j + 2]):
             continue
-        if all(moving.certify_poses(*pair).verdict == "free" for pair in itertools.pairwise(new)):
+        found = [moving.certify_poses(*pair) for pair in itertools.pairwise(new)]
+        tests += sum(each.tests for each in found)
+        if all(each.verdict == "free" for each in found):
             path[i : j + 2] = new
     return np.array(path).reshape(-1, 3, 4)
 

@@ -103,7 +103,7 @@ def turned_scene(name, body, obstacles, start, goal, room, random, *, feasible=T
     poses = [(turn @ rotation, turn @ np.asarray(place, float)) for rotation, place in (start, goal)]
     corners = np.array(np.meshgrid(*np.transpose(room))).reshape(3, -1).T @ turn.T
     bounds = tuple(map(tuple, (corners.min(0), corners.max(0))))
-    return Scene(name, body, moved, *poses, bounds, feasible)
+    return Scene(name, blum.oriented_mesh(body).mesh, blum.oriented_mesh(moved).mesh, *poses, bounds, feasible)
 
 
 def piano(seed=0, tightness=0.2):
