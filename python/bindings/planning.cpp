@@ -151,7 +151,8 @@ void bind_planning(nb::module_& m) {
             const auto found = run({1, nb::none()}, [&](const Context& context) {
               return self.first_contact(motions, tolerance, context);
             });
-            return found ? result_of(*found) : nb::none();
+            if (!found) return nb::none();
+            return result_of(*found);
           },
           nb::arg("start"), nb::arg("goal"), nb::arg("centres"), nb::arg("tolerance"))
       .def(

@@ -169,7 +169,9 @@ TEST(PathCertificate, OfRandomPathsAgreesWithThePlanningLayer) {
                                          make_soup({.triangles = 12})};
   int free = 0, refused = 0;
   for (int k = 0; k < 40; ++k) {
-    Scene scene{.bodies = {shapes[random.below(4)]}, .obstacles = {shapes[random.next() % 4]}, .path = {}};
+    const TriangleMesh& body = shapes[random.below(shapes.size())];
+    const TriangleMesh& obstacle = shapes[random.below(shapes.size())];
+    Scene scene{.bodies = {body}, .obstacles = {obstacle}, .path = {}};
     scene.path.centres = {random.in_ball()};
     const double far = random.uniform(2, 6);
     for (int waypoint = 0; waypoint < 3; ++waypoint) {
