@@ -43,10 +43,12 @@ void add_view_command(const CommandLine& line);
 
 /// All subcommands, in the order of the help. A new subcommand needs a source file, a declaration above, an entry here,
 /// and a test.
-inline constexpr std::array commands{
-    add_field_command,       add_slice_command,     add_make_command,  add_info_command,        add_formats_command,
-    add_medial_command,      add_verify_command,    add_match_command, add_reconstruct_command, add_surface_command,
-    add_centreline_command,  add_proximity_command, add_ccd_command,   add_query_command,       add_sample_command,
-    add_surface_map_command, add_hausdorff_command, add_clean_command, add_voronoi_command,     add_view_command};
+inline constexpr std::array commands{add_field_command,   add_slice_command,       add_make_command,
+                                     add_info_command,    add_formats_command,     add_medial_command,
+                                     add_verify_command,  add_match_command,       add_reconstruct_command,
+                                     add_surface_command, add_centreline_command,  add_proximity_command,
+                                     add_ccd_command,     add_plan_command,        add_query_command,
+                                     add_sample_command,  add_surface_map_command, add_hausdorff_command,
+                                     add_clean_command,   add_voronoi_command,     add_view_command};
 
 }  // namespace blum::cli

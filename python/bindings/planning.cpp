@@ -139,8 +139,8 @@ void bind_planning(nb::module_& m) {
           [](const MotionCertifier& self, const BodyPlacesIn& from, const BodyPlacesIn& to, const PointsIn& centres,
              double tolerance) {
             const std::vector<RigidMotion> motions = motions_of(from, to, centres);
-            return result_of(run(
-                {1, nb::none()}, [&](const Context& context) { return self.clearance(motions, tolerance, context); }));
+            return result_of(run({1, nb::none()},
+                                 [&](const Context& context) { return self.clearance(motions, tolerance, context); }));
           },
           nb::arg("start"), nb::arg("goal"), nb::arg("centres"), nb::arg("tolerance"))
       .def(
@@ -161,9 +161,8 @@ void bind_planning(nb::module_& m) {
              nb::object progress) {
             const auto options = options_from<PathOptions>(given);
             const MotionPath path = path_of(poses, centres);
-            return result_of(run({1, std::move(progress)}, [&](const Context& context) {
-              return certify_path(self, path, options, context);
-            }));
+            return result_of(run({1, std::move(progress)},
+                                 [&](const Context& context) { return certify_path(self, path, options, context); }));
           },
           nb::arg("poses"), nb::arg("centres"), nb::arg("options"), nb::arg("progress").none());
 }

@@ -79,9 +79,7 @@ class MotionCertifier:
     'too_close'
     """
 
-    def __init__(
-        self, body: MeshLike | list[Any], obstacles: MeshLike | list[Any], *, threads: int = 0
-    ) -> None:
+    def __init__(self, body: MeshLike | list[Any], obstacles: MeshLike | list[Any], *, threads: int = 0) -> None:
         bodies, fixed = _meshes(body), _meshes(obstacles)
         self._is_list = _is_list_of_meshes(body)
         self._shown = f"MotionCertifier({bodies if self._is_list else bodies[0]!r}, {fixed!r})"

@@ -103,8 +103,11 @@ def test_clearances_and_paths_hold():
     certifier = blum.MotionCertifier(box, box)
     places = [(-4, 0, 0), (0, 2, 0), (4, 0, 0)]
     proof = certifier.certify_path([(identity, place) for place in places], clearance=0.2, tolerance=0.01)
-    samples = [(identity, (1 - t) * np.array(a) + t * np.array(b)) for a, b in zip(places, places[1:], strict=False)
-               for t in np.linspace(0, 1, 50)]
+    samples = [
+        (identity, (1 - t) * np.array(a) + t * np.array(b))
+        for a, b in zip(places, places[1:], strict=False)
+        for t in np.linspace(0, 1, 50)
+    ]
     least = distances(box, box, samples).min()
     assert proof.verdict == "free" and proof.at_least <= least <= 1.02 * proof.at_least
     assert min(part.clearance for part in proof.intervals) == proof.at_least
