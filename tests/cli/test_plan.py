@@ -1,5 +1,6 @@
 """Checks paths of `blum plan` at many poses with SciPy and exact distances, and `blum verify` with false path files."""
 
+import itertools
 import json
 
 import numpy as np
@@ -20,7 +21,9 @@ def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("plan")
     run("make", "box", "-o", place / "bar.ply", "--size-x", 1.2, "--size-y", 0.3, "--size-z", 0.3)
     run("make", "plate", "-o", place / "plate.ply", "--hole-radius", 0.4)
-    found = run_json("plan", *meshes(place), *ends(), BOUNDS, "--clearance", 0.02, "--time", 60, "-o", place / "path.json")
+    found = run_json(
+        "plan", *meshes(place), *ends(), BOUNDS, "--clearance", 0.02, "--time", 60, "-o", place / "path.json"
+    )
     assert found["found"] and found["proof"]["verdict"] == "free" and found["proof"]["at_least"] >= 0.02
     return place
 
@@ -36,9 +39,9 @@ def ends(start=ABOVE, goal=BELOW):
 def poses_of(path, samples):
     """Poses of the body along a path file, by SciPy's interpolation of rotations."""
     poses, centre = np.array(path["poses"])[:, 0], np.array(path["centres"][0])
-    for first, second in zip(poses, poses[1:], strict=False):
+    for first, second in itertools.pairwise(poses):
         turns = transform.Rotation.from_quat([np.roll(first[3:], -1), np.roll(second[3:], -1)])
-        ends_of_centre = turns.apply(centre) + [first[:3], second[:3]]
+        ends_of_centre = [*turns.apply(centre), first[:3], second[:3]]
         times = np.linspace(0, 1, samples)
         for turn, t in zip(transform.Slerp([0, 1], turns)(times), times, strict=True):
             at = (1 - t) * ends_of_centre[0] + t * ends_of_centre[1]

@@ -1,5 +1,7 @@
 """Proves answers about motions: SciPy interpolates the poses, and a scene gives the distance at each of them."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -105,7 +107,7 @@ def test_clearances_and_paths_hold():
     proof = certifier.certify_path([(identity, place) for place in places], clearance=0.2, tolerance=0.01)
     samples = [
         (identity, (1 - t) * np.array(a) + t * np.array(b))
-        for a, b in zip(places, places[1:], strict=False)
+        for a, b in itertools.pairwise(places)
         for t in np.linspace(0, 1, 50)
     ]
     least = distances(box, box, samples).min()
@@ -114,7 +116,7 @@ def test_clearances_and_paths_hold():
     for edge in range(2):
         parts = [part for part in proof.intervals if part.edge == edge]
         assert parts[0].start == 0 and parts[-1].end == 1
-        assert all(a.end == b.start for a, b in zip(parts, parts[1:], strict=False))
+        assert all(a.end == b.start for a, b in itertools.pairwise(parts))
     one = certifier.clearance((identity, places[0]), (identity, places[1]), tolerance=0.01)
     assert one.at_least <= distances(box, box, samples[:50]).min() <= 1.02 * one.at_least
 
