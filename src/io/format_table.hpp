@@ -28,6 +28,7 @@
 namespace blum {
 
 struct AxisGraph;
+struct PathFile;
 struct VoronoiGraph;
 struct VoronoiSite;
 namespace surface_map_files {
@@ -139,6 +140,13 @@ struct ExtendedAxisCode {
   void (*write)(const fs::path& path, const Complex& surface, const FileMetadata& metadata, const Context& context);
 };
 
+struct PathCode {
+  /// @param name  of the file in messages. @throws FormatError.
+  PathFile (*read)(std::string_view bytes, const std::string& name);
+  /// Returns the content of a file. Null if Blum does not write the format.
+  std::string (*text_of)(const PathFile& file);
+};
+
 extern const MeshCode mesh_obj, mesh_off, mesh_stl, mesh_ply, mesh_glb;
 extern const ImageCode image_nrrd, image_nifti, image_npy, image_vol;
 extern const FieldCode field_nrrd, field_npz, field_vti;
@@ -149,12 +157,13 @@ extern const SurfaceMapCode surface_map_npz, surface_map_png, surface_map_glb, s
 extern const GraphCode graph_json, graph_graphml;
 extern const CentrelineCode centreline_json, centreline_csv, centreline_swc, centreline_as_complex;
 extern const ExtendedAxisCode extended_as_complex, extended_stl;
+extern const PathCode path_json, path_csv;
 
 /// Type that has the functions for formats of a kind of content.
 template <FileContent content>
 using CodeOf = std::tuple_element_t<static_cast<std::size_t>(content),
                                     std::tuple<MeshCode, ImageCode, FieldCode, ComplexCode, PointCode, RowCode, RowCode,
-                                               SurfaceMapCode, GraphCode, CentrelineCode, ExtendedAxisCode>>;
+                                               SurfaceMapCode, GraphCode, CentrelineCode, ExtendedAxisCode, PathCode>>;
 
 struct Row {
   FileContent content = FileContent::mesh;
@@ -164,7 +173,8 @@ struct Row {
   std::string_view holds;
   std::string_view opens_in;
   std::variant<const MeshCode*, const ImageCode*, const FieldCode*, const ComplexCode*, const PointCode*,
-               const RowCode*, const SurfaceMapCode*, const GraphCode*, const CentrelineCode*, const ExtendedAxisCode*>
+               const RowCode*, const SurfaceMapCode*, const GraphCode*, const CentrelineCode*, const ExtendedAxisCode*,
+               const PathCode*>
       code;
 };
 
@@ -250,6 +260,9 @@ inline constexpr auto table = [] {
       Row{extended_axis, "OBJ", "", ".obj", "positions, edges, triangles", "Blender, MeshLab", &extended_as_complex},
       Row{extended_axis, "NPZ", "", ".npz", "all columns, metadata", "NumPy", &extended_as_complex},
       Row{extended_axis, "STL", "", ".stl", "triangles; single precision", "CAD, slicers", &extended_stl},
+
+      Row{path, "JSON", ".json", ".json", "poses, meshes and the proof", "any program", &path_json},
+      Row{path, "CSV", ".csv", "", "poses of one body", "spreadsheets, planners", &path_csv},
   };
 }();
 

@@ -110,10 +110,10 @@ std::optional<FormatOf<content>> FormatOf<content>::by_head(std::string_view hea
 template <FileContent content>
 FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access, std::string_view what) {
   if (const auto row = find_extension(content, file_extension(path), access)) return FormatOf(*row);
-  constexpr std::array<std::string_view, 11> plural{
-      "meshes", "images",      "fields",       "complexes, medial axes among them,",
-      "points", "close pairs", "collisions",   "surface maps",
-      "graphs", "centrelines", "extended axes"};
+  constexpr std::array<std::string_view, 12> plural{
+      "meshes", "images",      "fields",        "complexes, medial axes among them,",
+      "points", "close pairs", "collisions",    "surface maps",
+      "graphs", "centrelines", "extended axes", "paths"};
   static_assert(plural.size() == Description<FileContent>::values.size());
   if (what.empty()) what = plural[static_cast<std::size_t>(content)];
   throw InvalidOption("'" + path.string() + "': " + std::string(what) + " are " +
@@ -135,6 +135,7 @@ template class FormatOf<FileContent::surface_map>;
 template class FormatOf<FileContent::graph>;
 template class FormatOf<FileContent::centreline>;
 template class FormatOf<FileContent::extended_axis>;
+template class FormatOf<FileContent::path>;
 
 std::string file_extension(const std::filesystem::path& path) {
   std::string last = volume_io::lower_case(path.extension().string());

@@ -13,7 +13,7 @@ CORPUS = pathlib.Path(__file__).parents[1] / "fuzz" / "corpus"
 def test_formats_are_listed_for_people_and_programs():
     formats = run_json("formats")["formats"]
     contents = {"mesh", "image", "field", "complex", "points", "pairs", "collisions", "surface map", "graph"}
-    assert contents | {"centreline", "extended axis"} == {one["content"] for one in formats}
+    assert contents | {"centreline", "extended axis", "path"} == {one["content"] for one in formats}
     text, _ = run("formats")
     for one in formats:
         assert one["extensions"] or one["written"]
@@ -24,7 +24,7 @@ def test_formats_are_listed_for_people_and_programs():
 
 def test_each_format_is_fuzzed():
     read = [one for one in run_json("formats")["formats"] if one["extensions"]]
-    read = [one for one in read if one["content"] in {"mesh", "image", "field", "complex"}]
+    read = [one for one in read if one["content"] in {"mesh", "image", "field", "complex", "path"}]
     wanted = {f"fuzz_{one['content']}_{one['name'].lower()}" for one in read}
     wanted |= {"fuzz_queries_csv", "fuzz_points_csv", "fuzz_maps_npz"}  # the inputs of `blum ccd`, `query` and `view`
     assert wanted == {folder.name for folder in CORPUS.iterdir()}
@@ -37,6 +37,7 @@ VERBS = [
     ("query", ["m.ply", "p.csv"], ".npz"), ("sample", ["m.ply", "--count", "3"], ".npy"),
     ("surface-map", ["m.ply"], ".npz"), ("hausdorff", ["m.ply", "m.ply"], ".npz"), ("clean", ["m.ply"], ".ply"),
     ("voronoi", ["m.ply"], ".ply"), ("view", ["m.ply"], ".html"),
+    ("plan", ["m.ply", "m.ply", "--start", "5,0,0,1,0,0,0", "--goal", "5,0,1,1,0,0,0"], ".json"),
     *[(f"proximity {query}", ["m.ply", "m.ply"], ".npz")
       for query in ("separation", "signed", "closest", "collide", "penetration", "continuous")],
 ]  # fmt: skip

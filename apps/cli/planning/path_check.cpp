@@ -1,7 +1,5 @@
 #include "planning/path_check.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "blum/certificate/path_certificate.hpp"
@@ -74,10 +72,7 @@ StatedPath stated_path(const PathFile& file, const PathMeshes& meshes, const std
 }  // namespace
 
 bool is_path_file(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".json" || extension == ".csv";
+  return PathFormat::by_name(path).has_value();
 }
 
 void check_path(const PathCheck& check, Progress& progress, const Context& context) {

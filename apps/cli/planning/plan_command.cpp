@@ -112,7 +112,7 @@ void run(const Arguments& a) {
   const PlanOptions options = a.options.read();
   std::vector<std::string> body_files{a.robot};
   body_files.insert(body_files.end(), a.bodies.begin(), a.bodies.end());
-  if (a.output) check_extension("--output", *a.output, {".json"});
+  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::path, FileAccess::write));
   PlanProblem problem;
   problem.start = parse_poses("--start", a.starts, body_files.size());
   problem.goal = parse_poses("--goal", a.goals, body_files.size());
@@ -180,7 +180,8 @@ void add_plan_command(const CommandLine& line) {
       .type_name("POSE")
       .one_value_each();
   command.add_option("--goal", a->goals, "Pose of the body at the end").required().type_name("POSE").one_value_each();
-  add_text_option(command, "-o,--output", a->output, "FILE", "Path with its proof (.json)");
+  add_text_option(command, "-o,--output", a->output, "FILE",
+                  "Path with its proof: " + extension_list(FileContent::path, FileAccess::write));
   add_text_option(command, "--bounds", a->bounds, "X0,Y0,Z0,X1,Y1,Z1",
                   "Box for the centre of the body (default: around all meshes and poses)");
   a->options.add_to(command);

@@ -28,6 +28,7 @@ enum class FileContent : std::uint8_t {
   graph,          ///< graph of a medial axis or a Voronoi diagram
   centreline,     ///< graph of curves with radii
   extended_axis,  ///< medial axis continued to the surface
+  path,           ///< path of rigid bodies, with its proof
 };
 
 template <>
@@ -43,7 +44,8 @@ struct Description<FileContent> {
                                      NamedValue{FileContent::surface_map, "surface map"},
                                      NamedValue{FileContent::graph, "graph"},
                                      NamedValue{FileContent::centreline, "centreline"},
-                                     NamedValue{FileContent::extended_axis, "extended axis"}};
+                                     NamedValue{FileContent::extended_axis, "extended axis"},
+                                     NamedValue{FileContent::path, "path"}};
 };
 
 enum class FileAccess : std::uint8_t {
@@ -126,6 +128,7 @@ using SurfaceMapFormat = FormatOf<FileContent::surface_map>;
 using GraphFormat = FormatOf<FileContent::graph>;
 using CentrelineFormat = FormatOf<FileContent::centreline>;
 using ExtendedAxisFormat = FormatOf<FileContent::extended_axis>;
+using PathFormat = FormatOf<FileContent::path>;
 
 extern template class FormatOf<FileContent::mesh>;
 extern template class FormatOf<FileContent::image>;
@@ -138,6 +141,7 @@ extern template class FormatOf<FileContent::surface_map>;
 extern template class FormatOf<FileContent::graph>;
 extern template class FormatOf<FileContent::centreline>;
 extern template class FormatOf<FileContent::extended_axis>;
+extern template class FormatOf<FileContent::path>;
 
 /// Returns the last extension of a file name in lower case, with its dot. The extensions ".nii.gz", ".hdr.gz" and
 /// ".img.gz" are treated as single extensions.

@@ -1,14 +1,17 @@
 // Blum: files of paths of rigid bodies. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
+#include "blum/io/formats.hpp"
 #include "blum/planning/certified_path.hpp"
 
 namespace blum {
@@ -49,5 +52,7 @@ void write_path(const std::filesystem::path& path, const PathFile& file, const C
 /// each waypoint of one body. A first row without numbers is ignored.
 /// @throws FormatError with the place of the error; InvalidOption for another extension; FileError.
 [[nodiscard]] PathFile read_path(const std::filesystem::path& path);
+/// Reads the bytes of a path file. @throws FormatError.
+[[nodiscard]] PathFile read_path(std::span<const std::byte> bytes, PathFormat format);
 
 }  // namespace blum

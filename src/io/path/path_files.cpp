@@ -10,11 +10,13 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <variant>
 
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/path_io.hpp"
 #include "io/bytes/byte_source.hpp"
+#include "io/format_table.hpp"
 #include "io/text/json.hpp"
 
 namespace blum {
@@ -219,11 +221,9 @@ PathFile read_csv(std::string_view text, const std::string& name) {
   return out;
 }
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
+/// Returns the functions of a format.
+const formats::PathCode& code_of(PathFormat format) {
+  return *std::get<const formats::PathCode*>(formats::table[format.row()].code);
 }
 
 }  // namespace
@@ -250,24 +250,29 @@ PathMesh describe_path_mesh(const fs::path& mesh, const fs::path& folder) {
 }
 
 void write_path(const fs::path& path, const PathFile& file, const Context& context) {
-  if (lower_extension(path) != ".json") {
-    throw InvalidOption("'" + path.string() + "': paths are written as .json; change the extension");
-  }
+  const PathFormat format = PathFormat::of(path, FileAccess::write);
   throw_if_cancelled(context);
   AtomicFile out(path);
-  out.write(text_of(file));
+  out.write(code_of(format).text_of(file));
   out.commit();
 }
 
 PathFile read_path(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension != ".json" && extension != ".csv") {
-    throw InvalidOption("'" + path.string() + "': paths are read from .json and .csv files");
-  }
+  const PathFormat format = PathFormat::of(path);
   const FileBytes bytes = read_whole_file(path);
   const std::string_view text(reinterpret_cast<const char*>(bytes.span().data()), bytes.size);
-  const std::string name = "'" + path.string() + "'";
-  return extension == ".json" ? read_json(text, name) : read_csv(text, name);
+  return code_of(format).read(text, "'" + path.string() + "'");
 }
+
+PathFile read_path(std::span<const std::byte> bytes, PathFormat format) {
+  return code_of(format).read({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "path");
+}
+
+namespace formats {
+
+constinit const PathCode path_json{read_json, text_of};
+constinit const PathCode path_csv{read_csv, nullptr};
+
+}  // namespace formats
 
 }  // namespace blum
