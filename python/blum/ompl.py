@@ -122,7 +122,7 @@ class CertifiedMotionValidator(base.MotionValidator):  # type: ignore[misc]
 class ClearanceSampler(base.ValidStateSampler):  # type: ignore[misc]
     """Sampler of valid states for OMPL. It finds more states in narrow places than uniform samples do.
 
-    Of each four states, two are uniform. One is the middle of two states that are not valid (Hsu et al. 2003). One has
+    For each four states, two are uniform. One is the middle of two states that are not valid (Hsu et al. 2003). One has
     moved away from the closest obstacle until another one is as close (Wilmarth, Amato and Stiller 1999). Planners that
     ask for valid states use it, for example PRM and BKPIECE. RRTs do not.
     """
@@ -138,9 +138,10 @@ class ClearanceSampler(base.ValidStateSampler):  # type: ignore[misc]
     def sample(self, state: Any) -> bool:
         """Sets a state to a valid one. Returns False if none was found."""
         self._calls += 1
-        for _ in range(self.getNrAttempts()):
+        attempts = self.getNrAttempts()
+        for attempt in range(attempts):
             self._sampler.sampleUniform(state)
-            if self._place(state, self._calls % 4):
+            if self._place(state, self._calls % 4 if 2 * attempt < attempts else 0):
                 return True
         return False
 
@@ -199,7 +200,8 @@ class Problem(geometric.SimpleSetup):  # type: ignore[misc]
         self.rigid_body = body
         information = self.getSpaceInformation()
         self.validator = CertifiedMotionValidator(information, body)
-        information.setStateValidityChecker(ClearanceChecker(information, body))
+        self.checker = ClearanceChecker(information, body)
+        information.setStateValidityChecker(self.checker)
         information.setMotionValidator(self.validator)
         information.setValidStateSamplerAllocator(lambda given: ClearanceSampler(given, body))
 

@@ -184,9 +184,9 @@ def twisted_bar(seed=0, tightness=0.2):
 
 
 def hollow_cube(seed=0, tightness=0.5, *, opening=True):
-    """A cube leaves a hollow one whose walls have a thousandth of its size. Steps of samples jump through them."""
+    """A plate leaves a hollow cube whose walls have a thousandth of its size. Steps of samples jump through them."""
     random, thin, small = np.random.default_rng(seed), 1e-3, 0.1
-    body = box((-small / 2,) * 3, (small / 2,) * 3)
+    body = box((-small / 2, -small / 2, -small / 20), (small / 2, small / 2, small / 20))
     gap = small * (1 + tightness) / 2
     parts = []
     for axis in range(3):
