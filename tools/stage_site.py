@@ -127,7 +127,7 @@ def write_python_pages(site: pathlib.Path) -> None:
             continue
         title = (ast.get_docstring(module) or path.stem).split("\n")[0].rstrip(".")
         name = path.stem.strip("_")
-        package = "blum.reference." if name == "reference" else "blum."
+        package = f"blum.{name}." if name in ("ompl", "reference") else "blum."
         kinds = {one.name: "class" for one in module.body if isinstance(one, ast.ClassDef)}
         kinds |= {one.name: "function" for one in module.body if isinstance(one, ast.FunctionDef)}
         parts = [f".. auto{kinds.get(one, 'data')}:: {package}{one}\n" for one in names_of(module)]

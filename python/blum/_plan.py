@@ -22,7 +22,7 @@ from ._sliding_planner import search as sliding_search
 
 __all__ = ["PlannedPath", "plan"]
 
-_Planner = Literal["sliding", "rrt_connect", "rrt", "prm", "kpiece", "bkpiece", "lbkpiece", "rrt_star", "bit_star"]
+_Planner = Literal["sliding", "rrt_connect", "rrt", "prm", "kpiece", "bkpiece", "lbkpiece", "rrt_star"]
 _CLASSES = {
     "rrt_connect": "RRTConnect",
     "rrt": "RRT",
@@ -31,7 +31,6 @@ _CLASSES = {
     "bkpiece": "BKPIECE1",
     "lbkpiece": "LBKPIECE1",
     "rrt_star": "RRTstar",
-    "bit_star": "BITstar",
 }
 _PER_MOTION = 20  # Shortcuts that are tried for each motion of a path.
 _TESTS = 20000  # Tests of distances for shortcuts. Counts do not depend on the machine, unlike seconds.
@@ -102,8 +101,8 @@ def plan(
     begin also in narrow gaps between them. If no path is found in time, the result says so. This does not prove that
     there is none.
 
-    Equal arguments give the same path, if the search ends before its time. The planners "rrt_star" and "bit_star" use
-    all of the time, so their paths may differ. The call seeds OMPL's generator, which the whole process shares.
+    Equal arguments give the same path, if the search ends before its time. The planner "rrt_star" uses all of the time,
+    so its paths may differ. The planners of OMPL seed its generator, which the whole process shares.
 
     Parameters
     ----------

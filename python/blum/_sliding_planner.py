@@ -75,7 +75,7 @@ class _Trees:
 
     def numbers(self) -> list[int]:
         """Returns the numbers of all trees."""
-        return np.unique(self._tree[: len(self.poses)]).tolist()
+        return [int(tree) for tree in np.unique(self._tree[: len(self.poses)])]
 
     def nearest(self, pose: FloatArray, tree: int, *, other: bool = False) -> tuple[int, float]:
         """Returns the pose of a tree, or of the other trees, from which the way is shortest, and this way."""
@@ -277,7 +277,8 @@ class _Search:
                 forces[k] = force
         room = contacts[-1][2] - self.moving.clearance
         longest = _LONGEST * max(room, math.exp(_AWAY[0]) * self.moving.radius)
-        part = min(1.0, longest / (np.linalg.norm(shift) + self.moving.radius * np.linalg.norm(turn) + 1e-300))
+        way = float(np.linalg.norm(shift)) + self.moving.radius * float(np.linalg.norm(turn))
+        part = min(1.0, longest / max(way, 1e-300))
         return self.moved(pose, part * shift, part * turn)
 
 

@@ -50,8 +50,8 @@ class RigidBody(MovingBody):
     The position of a state is the position of the body's centre. OMPL moves it along a straight line and turns the
     body about it at a constant speed. This is the motion that :class:`blum.MotionCertifier` certifies.
 
-    Its arguments are those of :func:`setup`, without `bounds`, and with `centre`: 3 numbers, in the coordinates of
-    the body, by default the middle of its box. With `rotation`, the states are those of a space of three dimensions.
+    Its arguments are those of :func:`setup`, but not `bounds`. A further one is `centre`: 3 numbers, in the coordinates
+    of the body. Its default is the middle of the body's box. With `rotation`, the space of states has three dimensions.
     """
 
     def pose(self, state: Any) -> FloatArray:
@@ -300,8 +300,8 @@ def search(
 ) -> tuple[FloatArray, int, str]:
     """Searches for a path with a planner of OMPL: :func:`blum.plan` without checks of its arguments.
 
-    Returns its poses (n, 3, 4), which have no rows if there is no path; the number of states of the planner; and how
-    close it came to the goal.
+    Returns the poses (n, 3, 4) of the path, or no rows. The other results are the number of the planner's states, and
+    how close it came to the goal.
     """
     level = util.getLogLevel()
     util.setLogLevel(util.LOG_NONE)  # OMPL reports an error for each seed but the first, although it uses the seed.

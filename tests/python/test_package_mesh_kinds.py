@@ -13,6 +13,7 @@ from content import content_of
 blum = pytest.importorskip("blum")
 
 #: Start and goal of a motion that passes through the origin.
+BESIDE = ((np.eye(3), (0, 0, 5)), (np.eye(3), (5, 0, 0)))
 FALL = ((np.eye(3), (0, 0, 5)), (np.eye(3), (0, 0, -5)))
 POINTS = np.array([[0.1, 0.2, 0.9], [2.0, 0.0, 0.0], [0.3, -0.2, 0.1]])
 
@@ -170,6 +171,7 @@ TAKERS = {
     "least_translation": lambda mesh: blum.least_translation(mesh, blum.generate("box")),
     "certify_motion": lambda mesh: blum.certify_motion(mesh, blum.generate("box"), *FALL),
     "MotionCertifier": lambda mesh: blum.MotionCertifier(mesh, blum.generate("box")).certify(*FALL),
+    "plan": lambda mesh: blum.plan(mesh, blum.generate("box"), *BESIDE, planner="sliding").poses,
     "directed_hausdorff_distance": lambda mesh: blum.directed_hausdorff_distance(mesh, mesh),
     "surface_deviation": lambda mesh: blum.surface_deviation(mesh, mesh),
     "view": page_of,

@@ -85,6 +85,7 @@ def results():
         "least_translation": blum.least_translation(blum.generate("box"), blum.generate("box")),
         "certify_motion": blum.certify_motion(BRACKET, BRACKET, (np.eye(3), (9, 0, 0)), (np.eye(3), (0, 0, 0))),
         "MotionCertifier": blum.MotionCertifier(BRACKET, BRACKET),
+        "plan": blum.plan(BRACKET, BRACKET, (np.eye(3), (9, 0, 0)), (np.eye(3), (0, 9, 0)), planner="sliding"),
         "continuous": moving.continuous({0: blum.generate("bracket").vertices + 1}),
         "continuous_collisions": blum.continuous_collisions(BRACKET, BRACKET.vertices + 1),
         "first_contact": blum.first_contact(BRACKET, BRACKET.vertices * [1, 1, -1]),
