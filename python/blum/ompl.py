@@ -17,6 +17,8 @@ This module needs OMPL's package for Python, version 2 (``pip install ompl``). `
 from __future__ import annotations
 
 import itertools
+import signal
+import threading
 from typing import Any
 
 import numpy as np
@@ -310,7 +312,7 @@ def search(
         problem = Problem(body, bounds)
         problem.set_poses(*ends)
         problem.setPlanner(getattr(geometric, planner)(problem.getSpaceInformation()))
-        problem.solve(time)
+        _solve(problem, time)
         states = base.PlannerData(problem.getSpaceInformation())
         problem.getPlannerData(states)
         count = states.numVertices()
@@ -325,3 +327,25 @@ def search(
         last = problem.poses()[-1]
         nearest = f"its closest approach is {body.way(last, ends[1]):.6g} from the goal"
     return np.empty((0, 3, 4)), count, nearest
+
+
+def _solve(problem: Problem, time: float) -> None:
+    """Solves a problem. Ctrl-C ends the search first: PRM ends the process if an exception passes through it."""
+    limit = base.timedPlannerTerminationCondition(time)
+    pressed: list[int] = []
+
+    def stop(number: int, _: Any) -> None:
+        pressed.append(number)
+        limit.terminate()
+
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or before in (None, signal.SIG_IGN):
+        problem.solve(limit)
+        return
+    signal.signal(signal.SIGINT, stop)
+    try:
+        problem.solve(limit)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if pressed:
+        raise KeyboardInterrupt

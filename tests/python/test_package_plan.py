@@ -1,7 +1,11 @@
 """Proves that planned paths are free: SciPy interpolates the poses, and a scene and trimesh give exact distances."""
 
+import os
+import signal
 import subprocess
 import sys
+import threading
+import time
 
 import blum
 import numpy as np
@@ -23,8 +27,8 @@ def sampled(path, count=60):
         times = np.linspace(0, 1, count)
         turns = Slerp([0, 1], Rotation.from_matrix([first[:, :3], last[:, :3]]))(times).as_matrix()
         places = [pose[:, :3] @ path.centre + pose[:, 3] for pose in (first, last)]
-        for turn, time in zip(turns, times, strict=True):
-            yield np.c_[turn, (1 - time) * places[0] + time * places[1] - turn @ path.centre]
+        for turn, part in zip(turns, times, strict=True):
+            yield np.c_[turn, (1 - part) * places[0] + part * places[1] - turn @ path.centre]
 
 
 def least_distance(body, obstacles, poses):
@@ -261,9 +265,9 @@ def test_states_and_poses_are_the_same_motion():
         states = [problem.state(pose) for pose in (first, last)]
         assert np.allclose(problem.pose(states[0]), first, atol=1e-13)
         middle = problem.getStateSpace().allocState()
-        for time in (0.25, 0.7):
-            problem.getStateSpace().interpolate(*states, time, middle)
-            assert np.allclose(problem.pose(middle), problem.rigid_body.between(first, last, time), atol=1e-12)
+        for part in (0.25, 0.7):
+            problem.getStateSpace().interpolate(*states, part, middle)
+            assert np.allclose(problem.pose(middle), problem.rigid_body.between(first, last, part), atol=1e-12)
 
 
 def test_the_checker_and_the_sampler():
@@ -288,6 +292,21 @@ def test_blum_does_not_import_ompl():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "ImportError: blum.ompl needs OMPL's package for Python, version 2: pip install ompl" in done.stderr
+
+
+@pytest.mark.parametrize("planner", ["sliding", "rrt_connect", "prm"])
+def test_ctrl_c_ends_the_search(planner):
+    scene = closed_cube(0)
+    before = signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # Shells ignore it for programs in the background.
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        planned(scene, planner=planner, time=30)
+    assert time.perf_counter() - began < 5
+    assert signal.signal(signal.SIGINT, before) is signal.default_int_handler
 
 
 def test_scenes_have_free_ends():
