@@ -125,7 +125,7 @@ def _gaps(moving: MovingBody, random: np.random.Generator) -> tuple[FloatArray, 
     across, middles = second - first, (first + second) / 2
     widths = np.linalg.norm(across, axis=1)
     thin = 0.5 * float(np.ptp(moving.body.vertices @ _principal_axes(moving.body.vertices).T, axis=0).min())
-    room = closest_points(moving.obstacles, middles).distance
+    room = closest_points(moving.obstacles, middles, sign="none").distance
     chosen = (widths < 4 * moving.radius) & (room > 0.3 * widths) & (room > 0.5 * thin)
     if len(moving.obstacles.triangles) and topology(moving.obstacles).closed:
         with warnings.catch_warnings():
