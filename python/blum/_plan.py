@@ -189,8 +189,8 @@ def _check_end(moving: MovingBody, pose: FloatArray, name: str, allow_inside: bo
         pair = found.closest
         what = "meets the obstacles" if pair.distance == 0 else f"is only {pair.distance:.6g} from the obstacles"
         raise InvalidOption(
-            f"{name}: the body {what} at {_shown(pair.on_obstacle)}: primitive {pair.body} of the body, "
-            f"{pair.obstacle} of the obstacles; the wanted clearance is {moving.clearance:g}"
+            f"{name}: the body {what} at {_shown(pair.on_other)}: primitive {pair.primitive} of the body, "
+            f"{pair.other_primitive} of the obstacles; the wanted clearance is {moving.clearance:g}"
         )
     if allow_inside:
         return
