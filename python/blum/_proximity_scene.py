@@ -703,7 +703,9 @@ class _Alone(AbstractContextManager[None]):
     def __enter__(self) -> None:
         scene, own = self._scene, threading.get_ident()
         if scene._owner == own:
-            raise RuntimeError("this scene is in use: its progress callback and signal handlers must not use it")
+            raise RuntimeError(
+                "this scene is used by a call that runs: progress callbacks and signal handlers must not use it"
+            )
         scene._busy.acquire()
         scene._owner = own
 

@@ -129,8 +129,8 @@ struct Sample {
   std::uint32_t place = 0;  ///< index of the sheet
 };
 
-/// Returns the k-th of a sequence of points that fill a triangle evenly. Its plastic-number steps spread any number of
-/// successive points (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// Returns the k-th of a sequence of points that fill a triangle evenly. The steps are powers of the plastic number, so
+/// any first points are spread evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 Vec3d point_in(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t k) {
   constexpr double first_step = 0.754877666246692760;
   constexpr double second_step = 0.569840290998053266;

@@ -77,6 +77,16 @@ def make_queries(folder):
         (folder / name).write_text("".join(f"{x},1,{y},1,{z},1,1\n" for x, y, z in points))
 
 
+def make_path(folder):
+    """A body and an obstacle, a path around it, and the path of another program."""
+    run("make", "box", "-o", folder / "robot.ply", "--size-x", 0.2, "--size-y", 0.2, "--size-z", 0.2)
+    run("make", "box", "-o", folder / "walls.ply")
+    poses = ["-2,0,0,1,0,0,0", "-2,2,0,1,0,0,0", "2,2,0,1,0,0,0", "2,0,0,1,0,0,0"]
+    run("plan", folder / "robot.ply", folder / "walls.ply", "--start=" + poses[0], "--goal", poses[-1],
+        "-o", folder / "path.json")  # fmt: skip
+    (folder / "path.csv").write_text("\n".join(poses))
+
+
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     """A folder with small versions of the files that examples read."""
@@ -110,6 +120,7 @@ def inputs(tmp_path_factory):
     for name in ("exact.vtp", "after.vtp"):
         run("voronoi", folder / "part.stl", "-o", folder / name, "--medial", "--patch-angle", 30)
     run("medial", folder / "scan.nii.gz", "-o", folder / "vessels.npz", "--label", 1)
+    make_path(folder)
     return folder
 
 

@@ -41,7 +41,7 @@ def poses_of(path, samples):
     poses, centre = np.array(path["poses"])[:, 0], np.array(path["centres"][0])
     for first, second in itertools.pairwise(poses):
         turns = transform.Rotation.from_quat([np.roll(first[3:], -1), np.roll(second[3:], -1)])
-        ends_of_centre = [*turns.apply(centre), first[:3], second[:3]]
+        ends_of_centre = np.add(turns.apply(centre), [first[:3], second[:3]])
         times = np.linspace(0, 1, samples)
         for turn, t in zip(transform.Slerp([0, 1], turns)(times), times, strict=True):
             at = (1 - t) * ends_of_centre[0] + t * ends_of_centre[1]

@@ -25,12 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum plan robot.ply walls.ply --start 0,0,0,1,0,0,0 --goal 4,0,0,1,0,0,0 -o path.json
-  blum plan robot.ply walls.ply --start 0,0,0,1,0,0,0 --goal 4,0,0,0.7071068,0,0,0.7071068 --clearance 0.05
-  blum plan lid.stl case.stl --body screw.stl --start 0,0,0,1,0,0,0 --goal 0,0,9,1,0,0,0
-    --start 0,0,2,1,0,0,0 --goal 5,0,9,1,0,0,0 -o out.json        two bodies, in an order that is found
-  blum verify path.json                                           check the written path
+  blum plan robot.ply walls.ply --start=-2,0,0,1,0,0,0 --goal 2,0,0,1,0,0,0 -o path.json
+  blum plan robot.ply walls.ply --start=-2,0,0,1,0,0,0 --goal 2,0,0,0,0,0,1 --clearance 0.05 --time 60
+  blum verify path.json                                      check the written path
 
+With --body FILE, a further body moves: repeat --start and --goal for it. The order is found.
 A pose x,y,z,qw,qx,qy,qz maps a mesh to the scene: a translation and a unit quaternion.
 All motions of the path are proven, so it passes no wall between two samples.
 Exit status: 0 a path was found and proven, 3 none was found in time. None found does not mean

@@ -279,7 +279,7 @@ class ComplexPlyReader {
     source_.fail("element " + in_quotes(element.name) + " has no property " + in_quotes(name));
   }
 
-  /// Reads the next entry of an element. Calls known(index, property) for each known property, which must read it.
+  /// Reads the next entry of an element. For each known property, calls known(index, property), which reads the value.
   template <class Known>
   void read_entry(const PlyElement& element, Layout& layout, Known known) {
     for (std::size_t k = 0; k < layout.uses.size(); ++k) {

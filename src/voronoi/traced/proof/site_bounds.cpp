@@ -64,7 +64,7 @@ SiteBounds::SiteBounds(const TracedSites& sites, const MeshView& mesh)
   add_side_errors();
 }
 
-/// The sides of a vertex's domain are at right angles to edges.
+/// Each side of a vertex's domain is a plane at right angles to an edge that ends in the vertex.
 void SiteBounds::add_side_errors() {
   side_error_ = direction_error_;
   std::map<std::uint32_t, double> largest;
