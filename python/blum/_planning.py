@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 
@@ -234,13 +234,13 @@ class MotionCertifier:
         >>> round(found.earliest, 9)
         0.4
         """
-        found: MotionContact | None = self._certifier.first_contact(
+        found: Any = self._certifier.first_contact(
             self._places(start, "start"),
             self._places(goal, "goal"),
             self._centres(centre),
             number(tolerance, "tolerance"),
         )
-        return found
+        return cast("MotionContact | None", found)
 
     @takes("PathOptions")
     def certify_path(

@@ -703,9 +703,7 @@ class _Alone(AbstractContextManager[None]):
     def __enter__(self) -> None:
         scene, own = self._scene, threading.get_ident()
         if scene._owner == own:
-            raise RuntimeError(
-                "this scene is used by a call that runs: progress callbacks and signal handlers must not use it"
-            )
+            raise RuntimeError("a running call uses this scene; progress callbacks and signal handlers must not")
         scene._busy.acquire()
         scene._owner = own
 
