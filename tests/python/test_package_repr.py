@@ -9,6 +9,7 @@ import pytest
 blum = pytest.importorskip("blum")
 
 BRACKET = blum.subdivided(blum.generate("bracket"), 1)
+AWAY = np.eye(3), (9, 0, 0)
 POINTS = np.random.default_rng(1).uniform(-1, 1, (999, 3))  # NumPy prints arrays of up to 1,000 entries in full.
 
 
@@ -85,6 +86,9 @@ def results():
         "least_translation": blum.least_translation(blum.generate("box"), blum.generate("box")),
         "certify_motion": blum.certify_motion(BRACKET, BRACKET, (np.eye(3), (9, 0, 0)), (np.eye(3), (0, 0, 0))),
         "MotionCertifier": blum.MotionCertifier(BRACKET, BRACKET),
+        "MotionClearance": blum.MotionCertifier(BRACKET, BRACKET).clearance(AWAY, AWAY),
+        "MotionContact": blum.MotionCertifier(BRACKET, BRACKET).first_contact(AWAY, (np.eye(3), (0, 0, 0))),
+        "CertifiedPath": blum.MotionCertifier(BRACKET, BRACKET).certify_path([AWAY, (np.eye(3), (0, 9, 0))]),
         "plan": blum.plan(BRACKET, BRACKET, (np.eye(3), (9, 0, 0)), (np.eye(3), (0, 9, 0)), planner="sliding"),
         "continuous": moving.continuous({0: blum.generate("bracket").vertices + 1}),
         "continuous_collisions": blum.continuous_collisions(BRACKET, BRACKET.vertices + 1),
