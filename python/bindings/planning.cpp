@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/certificate/path_certificate.hpp"
 #include "blum/planning/certified_motion.hpp"
 #include "blum/planning/certified_path.hpp"
 #include "call.hpp"
@@ -76,9 +77,36 @@ CertifiedMotion certify_poses(const MotionCertifier& certifier, const nb::callab
   return certifier.certify(motion, options);
 }
 
+/// Numbers of poses of bodies at waypoints: x, y, z, qw, qx, qy, qz.
+using PathNumbersIn = In<double, nb::shape<-1, -1, 7>>;
+
+StatedPath stated_path_of(const PathNumbersIn& poses, const PointsIn& centres, double clearance) {
+  StatedPath out{.centres = vectors_of(centres), .poses = {}, .clearance = clearance, .intervals = {}};
+  for (std::size_t waypoint = 0; waypoint < poses.shape(0); ++waypoint) {
+    std::vector<StatedPath::Pose>& to = out.poses.emplace_back();
+    for (std::size_t body = 0; body < poses.shape(1); ++body) {
+      StatedPath::Pose& pose = to.emplace_back();
+      for (std::size_t k = 0; k < pose.size(); ++k) pose[k] = poses(waypoint, body, k);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 void bind_planning(nb::module_& m) {
+  bind_struct<PathCertificate>(m);
+  m.def(
+      "verify_path",
+      [](const nb::list& bodies, const nb::list& obstacles, const PathNumbersIn& poses, const PointsIn& centres,
+         double clearance, nb::object progress) {
+        const std::vector<MeshView> first = views_of(bodies), second = views_of(obstacles);
+        const StatedPath path = stated_path_of(poses, centres, clearance);
+        return result_of(run({1, std::move(progress)},
+                             [&](const Context& context) { return verify_path(first, second, path, context); }));
+      },
+      nb::arg("bodies"), nb::arg("obstacles"), nb::arg("poses"), nb::arg("centres"), nb::arg("clearance"),
+      nb::arg("progress").none());
   bind_options<MotionOptions>(m);
   bind_options<PathOptions>(m);
   bind_struct<MotionPair>(m);
@@ -113,8 +141,8 @@ void bind_planning(nb::module_& m) {
              const nb::dict& given) {
             const auto options = options_from<MotionOptions>(given);
             const RigidMotion motion(place_of(from), place_of(to), {x, y, z});
-            return result_of(
-                run({1, nb::none()}, [&](const Context& context) { return self.certify(motion, options, context); }));
+            return result_of(run_brief(
+                {1, nb::none()}, [&](const Context& context) { return self.certify(motion, options, context); }));
           },
           nb::arg("start"), nb::arg("goal"), nb::arg("x"), nb::arg("y"), nb::arg("z"), nb::arg("options"))
       .def(
@@ -123,8 +151,8 @@ void bind_planning(nb::module_& m) {
              const nb::dict& given) {
             const auto options = options_from<MotionOptions>(given);
             const std::vector<RigidMotion> motions = motions_of(from, to, centres);
-            return result_of(
-                run({1, nb::none()}, [&](const Context& context) { return self.certify(motions, options, context); }));
+            return result_of(run_brief(
+                {1, nb::none()}, [&](const Context& context) { return self.certify(motions, options, context); }));
           },
           nb::arg("start"), nb::arg("goal"), nb::arg("centres"), nb::arg("options"))
       .def(

@@ -13,17 +13,19 @@ from ._arguments import FloatArray, Integer, Real, integer, number, triple
 from ._errors import InvalidOption
 from ._mesh import Mesh, MeshLike, as_mesh
 from ._options import takes
-from ._rigid import as_place
+from ._progress import Progress, reporting
+from ._rigid import as_place, as_pose, is_seven, numbers_of_pose
 from ._structs import (
     CertifiedMotion,
     CertifiedPath,
     MotionClearance,
     MotionContact,
     MotionOptions,
+    PathCertificate,
     PathOptions,
 )
 
-__all__ = ["MotionCertifier", "certify_motion"]
+__all__ = ["MotionCertifier", "certify_motion", "verify_path"]
 
 
 def _is_list_of_meshes(given: Any) -> bool:
@@ -40,6 +42,11 @@ def _meshes(given: Any) -> list[Mesh]:
     if _is_list_of_meshes(given):
         return [as_mesh(each) for each in given]
     return [as_mesh(given)]
+
+
+def _place(pose: Any, name: str) -> FloatArray:
+    """Returns a pose as (3, 4)."""
+    return as_pose(pose, name) if is_seven(pose) else as_place(pose)
 
 
 def _body_number(value: Any, name: str) -> int:
@@ -113,7 +120,7 @@ class MotionCertifier:
         each = list(poses) if self._is_list else [poses]
         if len(each) != len(self):
             raise InvalidOption(f"{name} holds {len(each)} poses, but there are {len(self)} bodies; give one for each")
-        return np.stack([as_place(pose) for pose in each])
+        return np.stack([_place(pose, name) for pose in each])
 
     def _centres(self, centre: Any) -> FloatArray:
         """Returns centres as (bodies, 3)."""
@@ -136,7 +143,8 @@ class MotionCertifier:
         Parameters
         ----------
         start, goal
-            Poses: (3, 4) or (4, 4) arrays, or pairs of a rotation (3, 3) and a translation (3,).
+            Poses: arrays (3, 4) or (4, 4), or pairs of a rotation (3, 3) and a translation (3,). A list of seven numbers x,
+            y, z, qw, qx, qy, qz is a pose, too.
         centre : 3 numbers, optional
             Centre of the rotation, in the coordinates of the body. Default: the middle of its box.
         **options
@@ -147,7 +155,7 @@ class MotionCertifier:
             )
             return found
         x, y, z = self._certifier.centre(0) if centre is None else triple(centre, "centre")
-        return self._certify(as_place(start), as_place(goal), (x, y, z), dict(options))
+        return self._certify(_place(start, "start"), _place(goal, "goal"), (x, y, z), dict(options))
 
     @takes("MotionOptions")
     def certify_poses(
@@ -244,7 +252,7 @@ class MotionCertifier:
 
     @takes("PathOptions")
     def certify_path(
-        self, poses: Any, *, centre: Any = None, progress: Any = None, **options: Unpack[PathOptions]
+        self, poses: Any, *, centre: Any = None, progress: Progress = False, **options: Unpack[PathOptions]
     ) -> CertifiedPath:
         """Returns a proof that a path through waypoints keeps its clearance, or the first motion that may not.
 
@@ -269,7 +277,8 @@ class MotionCertifier:
         ('free', True)
         """
         places = np.stack([self._places(each, f"poses[{k}]") for k, each in enumerate(poses)])
-        found: CertifiedPath = self._certifier.certify_path(places, self._centres(centre), dict(options), progress)
+        with reporting(progress) as report:
+            found: CertifiedPath = self._certifier.certify_path(places, self._centres(centre), dict(options), report)
         return found
 
     def _certify(
@@ -278,6 +287,71 @@ class MotionCertifier:
         """Certifies a motion between poses (3, 4). Planners call it for each edge, so it checks no types."""
         found: CertifiedMotion = self._certifier.certify(start, goal, *centre, options)
         return found
+
+
+def verify_path(
+    poses: Any,
+    body: MeshLike | list[Any],
+    obstacles: MeshLike | list[Any],
+    *,
+    centre: Any = None,
+    clearance: Real = 0.0,
+    progress: Progress = False,
+) -> PathCertificate:
+    """Checks that a path keeps its clearance, with code that is independent of :class:`MotionCertifier`.
+
+    It is the check of ``blum verify``, for example for the path of another planner.
+
+    Parameters
+    ----------
+    poses
+        Poses of the body at the waypoints: x, y, z, qw, qx, qy, qz; or as for :meth:`MotionCertifier.certify`. For a
+        list of bodies: a list of poses at each waypoint.
+    body, obstacles
+        As for :class:`MotionCertifier`.
+    centre : 3 numbers, optional
+        Point of the body that moves along straight lines, in the coordinates of the body. For a list of bodies: a list.
+        Default: the middle of its box.
+    clearance : float
+        Distance that the surfaces must keep, mesh units.
+    progress
+        As for :func:`distance_field`.
+
+    Examples
+    --------
+    >>> import blum
+    >>> around = [[-3, 0, 0, 1, 0, 0, 0], [0, 3, 0, 1, 0, 0, 0], [3, 0, 0, 1, 0, 0, 0]]
+    >>> blum.verify_path(around, blum.generate("box"), blum.generate("box"), clearance=0.5).holds
+    True
+    >>> blum.verify_path(around[::2], blum.generate("box"), blum.generate("box")).mismatches[0][:28]
+    'motion 0 at time 0.5: the di'
+    """
+    is_list = _is_list_of_meshes(body)
+    bodies, fixed = _meshes(body), _meshes(obstacles)
+
+    def of_bodies(one: Any, name: str) -> list[Any]:
+        each = list(one) if is_list else [one]
+        if len(each) != len(bodies):
+            raise InvalidOption(f"{name} has {len(each)} entries for {len(bodies)} bodies; give one for each body")
+        return each
+
+    waypoints = [
+        [numbers_of_pose(pose, f"poses[{k}]") for pose in of_bodies(one, f"poses[{k}]")] for k, one in enumerate(poses)
+    ]
+    if centre is None:
+        centres = [0.5 * (each.vertices.min(axis=0) + each.vertices.max(axis=0)) for each in bodies]
+    else:
+        centres = [triple(one, "centre") for one in of_bodies(centre, "centre")]
+    with reporting(progress) as report:
+        found: PathCertificate = _core.verify_path(
+            [each._arrays for each in bodies],
+            [each._arrays for each in fixed],
+            np.array(waypoints, dtype=np.float64).reshape(len(waypoints), len(bodies), 7),
+            np.array(centres, dtype=np.float64),
+            number(clearance, "clearance"),
+            report,
+        )
+    return found
 
 
 @takes("MotionOptions")
@@ -300,7 +374,8 @@ def certify_motion(
     body, obstacles : meshes
         Any triangles, segments and points. Only surfaces count.
     start, goal
-        Poses: (3, 4) or (4, 4) arrays, or pairs of a rotation (3, 3) and a translation (3,).
+        Poses: arrays (3, 4) or (4, 4), or pairs of a rotation (3, 3) and a translation (3,). A list of seven numbers x,
+        y, z, qw, qx, qy, qz is a pose, too.
     centre : 3 numbers, optional
         Centre of the rotation, in the coordinates of the body. Default: the middle of its box.
     threads

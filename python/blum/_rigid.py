@@ -123,6 +123,19 @@ def as_pose(value: Any, name: str) -> FloatArray:
     return pose
 
 
+def is_seven(value: Any) -> bool:
+    """Returns True for seven numbers: x, y, z and a quaternion."""
+    return np.shape(value) == (7,) if not isinstance(value, (tuple, list)) else len(value) == 7
+
+
+def numbers_of_pose(value: Any, name: str) -> list[float]:
+    """Returns a pose as x, y, z, qw, qx, qy, qz. Seven numbers are returned as they are."""
+    if is_seven(value):
+        return [float(each) for each in _real(value, name)]
+    pose = as_pose(value, name)
+    return [*pose[:, 3].tolist(), *quaternion_of(pose[:, :3])]
+
+
 def _pose_of_seven(row: FloatArray, name: str) -> FloatArray:
     """Returns the pose of x, y, z and a quaternion."""
     if not np.isfinite(row).all():

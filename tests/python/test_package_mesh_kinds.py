@@ -171,6 +171,7 @@ TAKERS = {
     "least_translation": lambda mesh: blum.least_translation(mesh, blum.generate("box")),
     "certify_motion": lambda mesh: blum.certify_motion(mesh, blum.generate("box"), *FALL),
     "MotionCertifier": lambda mesh: blum.MotionCertifier(mesh, blum.generate("box")).certify(*FALL),
+    "verify_path": lambda mesh: blum.verify_path(FALL, mesh, blum.generate("box")),
     "plan": lambda mesh: blum.plan(mesh, blum.generate("box"), *BESIDE, planner="sliding").poses,
     "directed_hausdorff_distance": lambda mesh: blum.directed_hausdorff_distance(mesh, mesh),
     "surface_deviation": lambda mesh: blum.surface_deviation(mesh, mesh),

@@ -121,6 +121,20 @@ def test_clearances_and_paths_hold():
     assert one.at_least <= distances(box, box, samples[:50]).min() <= 1.02 * one.at_least
 
 
+def test_the_independent_check_agrees():
+    """Poses may be seven numbers. A path through the obstacle is refused, and so is a raised clearance."""
+    box = blum.generate("box")
+    around = np.array([[-3, 0, 0, 1, 0, 0, 0], [0, 3, 0, 0.6, 0, 0, 0.8], [3, 0, 0, 1, 0, 0, 0]])
+    proof = blum.MotionCertifier(box, box).certify_path(around, tolerance=0.01)
+    assert proof.verdict == "free"
+    assert blum.verify_path(around, box, box, clearance=0.99 * proof.at_least).holds
+    refused = blum.verify_path(around, box, box, clearance=1.02 * proof.at_most)
+    assert not refused.holds and "the distance of body 0 and obstacle 0" in refused.mismatches[0]
+    assert not blum.verify_path(around[::2], box, box).holds
+    both = np.stack([around, around + np.array([0, 0, 5, 0, 0, 0, 0])], axis=1)
+    assert blum.verify_path(both, [box, box], [box]).holds
+
+
 def test_wrong_arguments_are_named():
     box, at = blum.generate("box"), (np.eye(3), (0, 0, 0))
     with pytest.raises(blum.InvalidOption, match="clearance"):

@@ -88,6 +88,7 @@ def results():
         "MotionCertifier": blum.MotionCertifier(BRACKET, BRACKET),
         "MotionClearance": blum.MotionCertifier(BRACKET, BRACKET).clearance(AWAY, AWAY),
         "MotionContact": blum.MotionCertifier(BRACKET, BRACKET).first_contact(AWAY, (np.eye(3), (0, 0, 0))),
+        "verify_path": blum.verify_path([AWAY, (np.eye(3), (0, 9, 0))], BRACKET, BRACKET),
         "CertifiedPath": blum.MotionCertifier(BRACKET, BRACKET).certify_path([AWAY, (np.eye(3), (0, 9, 0))]),
         "plan": blum.plan(BRACKET, BRACKET, (np.eye(3), (9, 0, 0)), (np.eye(3), (0, 9, 0)), planner="sliding"),
         "continuous": moving.continuous({0: blum.generate("bracket").vertices + 1}),
