@@ -141,8 +141,8 @@ void bind_planning(nb::module_& m) {
              const nb::dict& given) {
             const auto options = options_from<MotionOptions>(given);
             const RigidMotion motion(place_of(from), place_of(to), {x, y, z});
-            return result_of(run_brief(
-                {1, nb::none()}, [&](const Context& context) { return self.certify(motion, options, context); }));
+            return result_of(run_brief({1, nb::none()},
+                                       [&](const Context& context) { return self.certify(motion, options, context); }));
           },
           nb::arg("start"), nb::arg("goal"), nb::arg("x"), nb::arg("y"), nb::arg("z"), nb::arg("options"))
       .def(

@@ -143,8 +143,8 @@ class MotionCertifier:
         Parameters
         ----------
         start, goal
-            Poses: arrays (3, 4) or (4, 4), or pairs of a rotation (3, 3) and a translation (3,). A list of seven numbers x,
-            y, z, qw, qx, qy, qz is a pose, too.
+            Poses: arrays (3, 4) or (4, 4), or pairs of a rotation (3, 3) and a translation (3,). A list of seven
+            numbers x, y, z, qw, qx, qy, qz is a pose, too.
         centre : 3 numbers, optional
             Centre of the rotation, in the coordinates of the body. Default: the middle of its box.
         **options

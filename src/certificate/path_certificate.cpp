@@ -314,8 +314,8 @@ class PathVerifier {
     if (intervals_.empty()) {
       for (std::uint32_t edge = 0; edge < motions; ++edge) intervals_.push_back({edge, 0, 1, path_.clearance});
     }
-    std::stable_sort(intervals_.begin(), intervals_.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.edge, a.from) < std::pair(b.edge, b.from);
+    std::sort(intervals_.begin(), intervals_.end(), [](const auto& a, const auto& b) {
+      return std::tuple(a.edge, a.from, a.to, a.clearance) < std::tuple(b.edge, b.from, b.to, b.clearance);
     });
     std::size_t k = 0;
     for (std::uint32_t edge = 0; edge < motions; ++edge) {
