@@ -122,6 +122,15 @@ class MotionCertifier:
             raise InvalidOption(f"{name} holds {len(each)} poses, but there are {len(self)} bodies; give one for each")
         return np.stack([_place(pose, name) for pose in each])
 
+    def _poses_at(self, poses_at: Callable[[float], Any], time: float) -> FloatArray:
+        """Returns the poses that a function gives, as (bodies, 3, 4)."""
+        poses = np.ascontiguousarray(poses_at(time), dtype=np.float64)
+        if poses.shape != (len(self), 3, 4) and not (len(self) == 1 and poses.shape == (3, 4)):
+            raise InvalidOption(
+                f"poses_at({time:g}) has the shape {poses.shape}, but must have ({len(self)}, 3, 4): a pose of each body"
+            )
+        return poses.reshape(len(self), 3, 4)
+
     def _centres(self, centre: Any) -> FloatArray:
         """Returns centres as (bodies, 3)."""
         if centre is None:
@@ -187,7 +196,7 @@ class MotionCertifier:
         'free'
         """
         found: CertifiedMotion = self._certifier.certify_poses(
-            lambda time: np.ascontiguousarray(poses_at(time), dtype=np.float64).reshape(len(self), 3, 4),
+            lambda time: self._poses_at(poses_at, time),
             [number(each, "speeds") for each in speeds],
             [number(each, "errors") for each in errors],
             dict(options),
@@ -276,6 +285,8 @@ class MotionCertifier:
         >>> proof.verdict, proof.at_least > 0.5
         ('free', True)
         """
+        if len(poses) == 0:
+            raise InvalidOption("poses are empty; give the pose of at least one waypoint")
         places = np.stack([self._places(each, f"poses[{k}]") for k, each in enumerate(poses)])
         with reporting(progress) as report:
             found: CertifiedPath = self._certifier.certify_path(places, self._centres(centre), dict(options), report)

@@ -236,6 +236,9 @@ class PathVerifier {
                const Context& context)
       : path_(path), context_(context) {
     if (bodies.empty()) throw InvalidOption("path: there is no body; give the mesh of each body");
+    if (bodies.size() == 1 && obstacles.empty()) {
+      throw InvalidOption("path: there is one body, but no obstacle; give the meshes of the obstacles");
+    }
     for (const MeshView& mesh : bodies) bodies_.emplace_back(mesh, context);
     for (const MeshView& mesh : obstacles) obstacles_.emplace_back(mesh, context);
     for (const PathMesh& mesh : obstacles_) {
@@ -334,9 +337,11 @@ class PathVerifier {
     for (const StatedPath::Interval& interval : intervals_) {
       const bool is_time = interval.from >= 0 && interval.to <= 1 && interval.from < interval.to;
       if (is_time && interval.clearance >= path_.clearance && std::isfinite(interval.clearance)) continue;
-      refuse("the interval from " + text_of(interval.from) + " to " + text_of(interval.to) + " of motion " +
-             std::to_string(interval.edge) + " states a clearance of " + text_of(interval.clearance) +
-             ", but the path states " + text_of(path_.clearance));
+      const std::string name = "the interval from " + text_of(interval.from) + " to " + text_of(interval.to) +
+                               " of motion " + std::to_string(interval.edge);
+      refuse(is_time ? name + " states a clearance of " + text_of(interval.clearance) + ", but that of the path is " +
+                           text_of(path_.clearance)
+                     : name + " is not a part of the times from 0 to 1");
       break;
     }
     return out_.mismatches.empty();
@@ -361,8 +366,8 @@ class PathVerifier {
       largest = std::max({largest, 2 * bodies_[body].largest() + 2 * length(motion.centre) + length(motion.from),
                           2 * bodies_[body].largest() + 2 * length(motion.centre) + length(motion.to)});
     }
-    rounding_ = 3e-14 * largest;
-    allowance_ = 1e-12 * largest;
+    rounding_ = 1e-14 * largest;
+    largest_in_scene_ = largest;
     tests_left_ = most_tests;
     for (const StatedPath::Interval& interval : intervals_) {
       if (interval.edge != edge) continue;
@@ -384,9 +389,9 @@ class PathVerifier {
     const std::optional<Failure> failure = first_failure(stated.clearance, 0.5 * (to - from));
     if (!failure) return true;
     const std::string where = "motion " + std::to_string(stated.edge) + " at time " + text_of(middle) + ": ";
-    if (failure->distance < std::max(stated.clearance - allowance_, 0.0) || failure->distance == 0) {
+    if (failure->distance < std::max(stated.clearance - allowance(stated.clearance), 0.0) || failure->distance == 0) {
       refuse(where + "the distance of body " + std::to_string(failure->body) + " and " + failure->other + " is " +
-             text_of(failure->distance) + ", but the path states a clearance of " + text_of(stated.clearance));
+             text_of(failure->distance) + ", but the clearance must be " + text_of(stated.clearance));
       return false;
     }
     const bool is_single = middle <= from || middle >= to;
@@ -425,7 +430,7 @@ class PathVerifier {
   /// Returns the distance of primitives that may come closer than a clearance, if any do.
   [[nodiscard]] std::optional<double> close_pair(const PlacedMesh& a, const PlacedMesh& b, double clearance,
                                                  double half) const {
-    const double wanted = std::max(clearance - allowance_, 0.0) + 2 * rounding_;
+    const double wanted = std::max(clearance - allowance(clearance), 0.0) + 2 * rounding_;
     const double spread = half * (a.speed + b.speed);
     // Points leave the chords of their paths by at most this distance.
     const double bulge = 0.5 * half * half * (a.acceleration + b.acceleration);
@@ -452,7 +457,12 @@ class PathVerifier {
   std::vector<PlacedMesh> placed_, placed_obstacles_;
   std::vector<StatedMotion> motions_;
   std::vector<StatedPath::Interval> intervals_;
-  double largest_ = 0, rounding_ = 0, allowance_ = 0;
+  /// Returns how much smaller than a stated clearance the true one may be, because of rounding.
+  [[nodiscard]] double allowance(double clearance) const {
+    return std::min(1e-12 * largest_in_scene_, 1e-6 * clearance);
+  }
+
+  double largest_ = 0, rounding_ = 0, largest_in_scene_ = 0;
   std::size_t tests_left_ = 0;
   PathCertificate out_;
 };

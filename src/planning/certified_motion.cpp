@@ -107,7 +107,7 @@ MotionCertifier::MotionCertifier(std::span<const MeshView> bodies, std::span<con
     : bodies_(std::make_unique<detail::Bodies>()) {
   if (bodies.empty()) throw InvalidOption("motion: there is no body; give at least one");
   if (bodies.size() == 1 && obstacles.empty()) {
-    throw InvalidOption("motion: there are one body and no obstacle; give an obstacle or a second body");
+    throw InvalidOption("motion: there is one body, but no obstacle; give an obstacle or a second body");
   }
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const std::string name = bodies.size() == 1 ? "body" : "body " + std::to_string(k);

@@ -56,8 +56,8 @@ class LeastSearch {
 
   [[nodiscard]] bool is_narrow(const Item& item, double tolerance) const {
     const MotionTests& tests = motions_[item.motion];
-    const bool is_at_rounding = item.at.half() * tests.speed(item.pair) < 8 * tests.error(item.pair);
-    return smallest_ == 0 || item.least >= (1 - tolerance) * smallest_ || is_at_rounding || item.at.is_single();
+    const double enough = std::min((1 - tolerance) * smallest_, smallest_ - 16 * tests.error(item.pair));
+    return smallest_ == 0 || item.least >= enough || item.at.is_single();
   }
 
   std::span<MotionTests> motions_;

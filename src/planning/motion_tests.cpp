@@ -72,6 +72,9 @@ double PairTwists::least_distance(const std::array<Vec3d, 3>& a, const std::arra
   return height_a.least - height_b.most - half * (std::max(speed, 0.0) + 0.5 * half * acceleration);
 }
 
+/// Lengths below this, mesh units, are lost when they are squared.
+constexpr double least_error = 1e-150;
+
 MotionTests::MotionTests(const Bodies& data, const PosesOverTime& motion, const Context& context)
     : data_(data), motion_(motion), context_(context), poses_(data.bodies.size()) {
   for (const BodyPair& pair : data.pairs) {
@@ -90,7 +93,7 @@ MotionTests::MotionTests(const Bodies& data, const PosesOverTime& motion, const 
       largest += data.obstacles->bounds().largest_coordinate();
     }
     // Boxes of hierarchies and distances of primitives are rounded, too.
-    bounds.error += 4e-14 * (largest + data.bodies[pair.body].bounds().largest_coordinate());
+    bounds.error += 4e-14 * (largest + data.bodies[pair.body].bounds().largest_coordinate()) + least_error;
     bounds_.push_back(bounds);
   }
 }
@@ -124,8 +127,17 @@ class PairInterval {
     Bound out{.now = triangle_distance(a, b)};
     out.least = out.now.distance - spread_;
     if (out.least > enough || out.now.distance == 0 || half_ > longest_with_velocities || !twists_.body) return out;
-    const Vec3d normal = out.now.first_point - out.now.second_point;
-    out.least = std::max(out.least, twists_.least_distance(a, b, normal, half_) - error_);
+    const auto use = [&](const Vec3d& normal) {
+      out.least = std::max(out.least, twists_.least_distance(a, b, normal, half_) - error_);
+    };
+    const Vec3d away = out.now.first_point - out.now.second_point;
+    use(away);
+    // Across a gap near rounding, the direction between the closest points is rounded, but not that of a face.
+    for (const PlacedPair::Corners* face : {&a, &b}) {
+      if (out.least > enough) return out;
+      const Vec3d normal = cross((*face)[1] - (*face)[0], (*face)[2] - (*face)[0]);
+      use(dot(normal, away) < 0 ? normal * -1.0 : normal);
+    }
     return out;
   }
 
@@ -191,7 +203,7 @@ MotionTests::Least MotionTests::least_during(std::size_t pair, const TimeInterva
   };
   if (bounds.last) compare(bounds.last->first, bounds.last->second);
   // Primitives beyond this distance have a larger bound.
-  const auto reach = [&] { return std::max(out.bound, 0.0) + interval.spread() + bounds.error; };
+  const auto reach = [&] { return out.bound + interval.spread() + bounds.error; };
   placed.for_each_near_pair(reach(), [&](std::uint32_t other, std::uint32_t own, double) -> OrientedBvh::Wanted {
     compare(other, own);
     return out.closest->distance == 0 ? -1.0 : reach();
@@ -298,6 +310,8 @@ std::optional<std::pair<double, MotionPair>> contact_after(MotionTests& tests, c
     if (pair && pair->distance == 0) return std::pair(time, *pair);
     step = step == 0 ? std::max(doubt.to - doubt.from, 0x1p-40) : 2 * step;
   }
+  const auto pair = tests.closest(1, 0);
+  if (pair && pair->distance == 0) return std::pair(1.0, *pair);
   return std::nullopt;
 }
 

@@ -85,7 +85,10 @@ class Planner {
     if (options.delta) delta_ = *options.delta;
     check_pose(problem.start, "start");
     check_pose(problem.goal, "goal");
-    if (!options.allow_inside) check_inside();
+    if (!options.allow_inside) {
+      check_inside(problem.start, "start");
+      check_inside(problem.goal, "goal");
+    }
     set_bounds();
   }
 
@@ -154,23 +157,46 @@ class Planner {
     throw InvalidOption("plan: at the " + name + ", body " + std::to_string(pair.body) + " " +
                         (pair.distance == 0
                              ? "meets " + other
-                             : "is closer to " + other + " than the clearance of " + exact_text(options_.clearance) +
-                                   ": their distance is " + exact_text(pair.distance)) +
+                             : "is too close to " + other + ": their distance is " + exact_text(pair.distance) +
+                                   ", but must be above " + exact_text(options_.clearance + delta_) +
+                                   ", the clearance and delta,") +
                         " at " + place_text(pair.on_body) + "; choose another " + name);
   }
 
-  /// Rejects bodies inside the solids of obstacles: a path out of them does not exist.
-  void check_inside() const {
+  /// A mesh of the problem at a pose.
+  struct Placed {
+    const MeshView& mesh;
+    RigidTransform pose;
+    std::string name;
+    bool moves;
+  };
+  [[nodiscard]] std::vector<Placed> placed(const std::vector<RigidTransform>& poses) const {
+    std::vector<Placed> out;
+    for (std::size_t k = 0; k < bodies(); ++k) {
+      out.push_back({problem_.bodies[k], poses[k], "body " + std::to_string(k), true});
+    }
     for (std::size_t k = 0; k < problem_.obstacles.size(); ++k) {
-      if (!is_closed(problem_.obstacles[k])) continue;
-      const WindingNumber winding(problem_.obstacles[k], context_);
-      for (std::size_t body = 0; body < bodies(); ++body) {
-        for (const Vec3d& p : vertex_of_each_part(problem_.bodies[body])) {
-          const Vec3d at = problem_.start[body](p);
-          if (!winding.is_inside(at)) continue;
-          throw InvalidOption("plan: at the start, body " + std::to_string(body) + " is inside the solid of obstacle " +
-                              std::to_string(k) + " at " + place_text(at) +
-                              "; choose another start, or allow it for an obstacle that is a room (allow_inside)");
+      out.push_back({problem_.obstacles[k], {}, "obstacle " + std::to_string(k), false});
+    }
+    return out;
+  }
+
+  /// Rejects poses at which a mesh is inside the solid of another one: no path leads out of it.
+  void check_inside(const std::vector<RigidTransform>& poses, const std::string& name) const {
+    const std::vector<Placed> all = placed(poses);
+    for (const Placed& solid : all) {
+      if (!is_closed(solid.mesh)) continue;
+      const WindingNumber winding(solid.mesh, context_);
+      const RigidTransform to_solid = solid.pose.inverse();
+      for (const Placed& other : all) {
+        if (&other == &solid || !(other.moves || solid.moves)) continue;
+        for (const Vec3d& p : vertex_of_each_part(other.mesh)) {
+          const Vec3d at = other.pose(p);
+          // The number is -1 in solids that face inwards.
+          if (!(std::abs(winding.estimate(to_solid(at), 0.1).value) > 0.5)) continue;
+          throw InvalidOption("plan: at the " + name + ", " + other.name + " is inside the solid of " + solid.name +
+                              " at " + place_text(at) + "; choose another " + name +
+                              ", or allow it for a solid that is a room (allow_inside)");
         }
       }
     }
@@ -240,11 +266,28 @@ class Planner {
     context_.progress(share, "search");
   }
 
+  /// Adds a waypoint to motions with turns of almost 180 degrees: the direction of a half turn would not be defined.
+  void split_half_turns() {
+    constexpr double most = 3.14;
+    std::vector<std::vector<RigidTransform>>& poses = out_.path.poses;
+    for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
+      std::vector<RigidTransform> middle;
+      bool turns_far = false;
+      for (std::size_t body = 0; body < bodies(); ++body) {
+        const RigidMotion motion(poses[k][body], poses[k + 1][body], centres_[body]);
+        turns_far = turns_far || motion.angle() > most;
+        middle.push_back(pose_of(numbers_of(motion.at(0.5))));
+      }
+      if (turns_far) poses.insert(poses.begin() + static_cast<std::ptrdiff_t>(k) + 1, middle);
+    }
+  }
+
   /// Certifies the whole path, as written: with poses that were converted to numbers and back.
   bool prove() {
     for (std::vector<RigidTransform>& waypoint : out_.path.poses) {
       for (RigidTransform& pose : waypoint) pose = pose_of(numbers_of(pose));
     }
+    split_half_turns();
     out_.proof = certify_path(certifier_, out_.path, {.clearance = options_.clearance, .delta = delta_ / 2}, context_);
     return out_.proof.verdict == MotionVerdict::free;
   }

@@ -13,11 +13,19 @@ namespace {
 
 /// Returns the mesh if it is valid.
 const MeshView& checked(const MeshView& mesh, const std::string& name) {
-  constexpr double furthest = 1e70;
+  constexpr double furthest = 1e70, smallest = 1e-140;
   validate(mesh);
+  double largest = 0;
   for (const Vec3d& p : mesh.vertices) {
-    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= furthest) continue;
-    throw InvalidMesh("motion: a coordinate of the " + name + " is beyond 1e70; use other units");
+    const double here = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    if (!(here <= furthest)) {
+      throw InvalidMesh("motion: a coordinate of the " + name + " is beyond 1e70; use other units");
+    }
+    largest = std::max(largest, here);
+  }
+  // Squares of smaller numbers would become 0.
+  if (largest > 0 && largest < smallest) {
+    throw InvalidMesh("motion: all coordinates of the " + name + " are below 1e-140; use other units");
   }
   return mesh;
 }

@@ -78,9 +78,9 @@ def test_verify_certifies_the_path_and_refuses_lies(folder):
         assert reason in err, err
 
     refused(lambda lie: lie["poses"][1][0].__setitem__(2, 0), "the distance of body 0 and obstacle 0 is")
-    refused(lambda lie: lie.__setitem__("clearance", 0.5), "the path states 0.5")
+    refused(lambda lie: lie.__setitem__("clearance", 0.5), "that of the path is 0.5")
     refused(lambda lie: lie["intervals"].pop(1), "do not cover its time")
-    refused(lambda lie: lie["intervals"][2].__setitem__(3, 3.0), "the path states a clearance of 3")
+    refused(lambda lie: lie["intervals"][2].__setitem__(3, 3.0), "the clearance must be 3")
     refused(lambda lie: lie["obstacles"][0].__setitem__("crc32", "00000000"), "is not the mesh of the path")
     refused(lambda lie: lie["obstacles"][0].__setitem__("file", "bar.ply"), "is not the mesh of the path")
     text = (folder / "path.json").read_text()
@@ -94,7 +94,7 @@ def test_verify_judges_paths_of_other_programs(folder):
     (folder / "other.csv").write_text("x,y,z,qw,qx,qy,qz\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
     assert run_json("verify", folder / "other.csv", *meshes(folder), "--clearance", 0.019)["path"]["holds"]
     _, err = run("verify", folder / "other.csv", *meshes(folder), "--clearance", 0.1, status=3)
-    assert "but the path states a clearance of 0.1" in err
+    assert "but the clearance must be 0.1" in err
     (folder / "straight.csv").write_text("0,0,1,1,0,0,0\n0,0,-1,1,0,0,0\n")
     _, err = run("verify", folder / "straight.csv", *meshes(folder), status=3)
     assert "the distance of body 0 and obstacle 0 is 0" in err

@@ -65,6 +65,8 @@ StatedPath stated_path(const PathFile& file, const PathMeshes& meshes, const std
     for (const TriangleMesh& body : meshes.bodies) out.centres.push_back(bounds(body).center());
   }
   out.clearance = clearance.value_or(file.clearance.value_or(0));
+  // The stated proof belongs to the stated clearance.
+  if (clearance) return out;
   for (const PathInterval& one : file.intervals) out.intervals.push_back({one.edge, one.from, one.to, one.clearance});
   return out;
 }

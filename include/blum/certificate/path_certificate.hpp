@@ -59,10 +59,12 @@ struct Description<PathCertificate> {
 /// Checks a path with code of its own: it shares no distances, hierarchies or motions with the planning layer.
 ///
 /// Each stated interval must have its clearance, and the intervals of each motion must cover its time. Their clearances
-/// must be at least that of the path. Clearances are checked up to 1e-12 of the largest coordinate; contact is excluded
-/// without this allowance. If motions have no stated intervals, the check subdivides them itself.
+/// must be at least that of the path. Clearances are checked up to 1e-12 of the largest coordinate, but at most a
+/// millionth of the clearance. Contact is excluded without this allowance. If motions have no stated intervals, the
+/// check subdivides them itself.
 /// @param bodies, obstacles  must pass validate(mesh). Coordinates are of magnitude at most 1e70.
-/// @throws InvalidMesh; InvalidOption if there is no body; Cancelled. Progress counts motions.
+/// @throws InvalidMesh; InvalidOption if there is no body, or one body and no obstacle; Cancelled. Progress counts
+/// motions.
 [[nodiscard]] PathCertificate verify_path(std::span<const MeshView> bodies, std::span<const MeshView> obstacles,
                                           const StatedPath& path, const Context& context = {});
 

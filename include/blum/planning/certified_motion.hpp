@@ -182,7 +182,8 @@ struct BoundedMotion {
 /// Rounding is part of the bound: docs/theory/planning.md.
 class MotionCertifier {
  public:
-  /// @param body, obstacles  must pass validate(mesh). Coordinates are of magnitude at most 1e70.
+  /// @param body, obstacles  must pass validate(mesh). The largest magnitude of a mesh's coordinates must be 0, or from
+  ///                         1e-140 to 1e70.
   /// @throws InvalidMesh; Cancelled. Cost: 0.3 microseconds per primitive.
   MotionCertifier(const MeshView& body, const MeshView& obstacles, const Context& context = {});
   /// Takes several bodies and several obstacles.

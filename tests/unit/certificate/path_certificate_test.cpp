@@ -98,7 +98,7 @@ TEST_F(PathCertificates, OfAProvenPathHolds) {
 TEST_F(PathCertificates, RefusesRaisedClearances) {
   StatedPath as_proven = stated;
   stated.clearance = 1.1 * proof.at_most;
-  expect_refused("states a clearance");
+  expect_refused("that of the path is");
   for (auto& interval : stated.intervals) interval.clearance = std::max(interval.clearance, stated.clearance);
   expect_refused("the distance of body");
   stated = as_proven;
@@ -198,7 +198,9 @@ TEST(PathCertificate, OfRandomPathsAgreesWithThePlanningLayer) {
 
 TEST(PathCertificate, RejectsBadInput) {
   EXPECT_THROW(static_cast<void>(verify_path({}, {}, {})), InvalidOption);
-  const Scene scene{.bodies = {TriangleMesh{}}, .obstacles = {}, .path = {}};
+  const Scene alone{.bodies = {box({1, 1, 1})}, .obstacles = {}, .path = {}};
+  EXPECT_THROW(static_cast<void>(alone.verified({})), InvalidOption);
+  const Scene scene{.bodies = {TriangleMesh{}}, .obstacles = {box({1, 1, 1})}, .path = {}};
   EXPECT_THROW(static_cast<void>(scene.verified({})), InvalidMesh);
 }
 

@@ -136,11 +136,11 @@ TEST(Plan, NamesWhatIsWrongWithStartAndGoal) {
   task.goal = {moved({4.5, 0, 0})};
   EXPECT_NE(error_of(task).find("at the goal, body 0 meets obstacle 0"), std::string::npos) << error_of(task);
   task.goal = {moved({9, 0, 0})};
-  EXPECT_NE(error_of(task, {.clearance = 4}).find("at the start, body 0 is closer"), std::string::npos);
+  EXPECT_NE(error_of(task, {.clearance = 4}).find("at the start, body 0 is too close"), std::string::npos);
   EXPECT_NE(error_of(task, {.time = 0}).find("time must be positive"), std::string::npos);
   task.obstacles = {box({9, 9, 9})};
   task.goal = {moved({1, 0, 0})};
-  EXPECT_NE(error_of(task).find("is inside the solid of obstacle 0"), std::string::npos);
+  EXPECT_NE(error_of(task).find("body 0 is inside the solid of obstacle 0"), std::string::npos);
   EXPECT_EQ(error_of(task, {.time = 1, .allow_inside = true}), "no error");
   task.goal.clear();
   EXPECT_NE(error_of(task).find("1 starts and 0 goals for 1 bodies"), std::string::npos);
