@@ -35,18 +35,19 @@ def box(size=(1, 1, 1), centre=(0, 0, 0)):
 
 def write(name, mesh):
     v, t = mesh
-    rows = [" ".join(repr(float(x)) for x in p) for p in v] + ["3 %d %d %d" % tuple(f) for f in t]
+    rows = [" ".join(repr(float(x)) for x in p) for p in v] + [f"3 {a} {b} {c}" for a, b, c in t]
     name.write_text(f"OFF\n{len(v)} {len(t)} 0\n" + "\n".join(rows) + "\n")
     data = name.read_bytes()
     return {"file": name.name, "bytes": len(data), "crc32": f"{zlib.crc32(data):08x}"}
 
 
 def path_file(folder, poses, clearance, centre=(0, 0, 0), intervals=None, obstacles=None):
+    rest = [box()] if obstacles is None else obstacles
     path = {
         "format": "blum-path",
         "version": 1,
         "bodies": [write(folder / "b.off", box())],
-        "obstacles": [write(folder / f"o{k}.off", o) for k, o in enumerate([box()] if obstacles is None else obstacles)],
+        "obstacles": [write(folder / f"o{k}.off", o) for k, o in enumerate(rest)],
         "centres": [list(centre)],
         "poses": [[p] for p in poses],
         "clearance": clearance,
