@@ -127,7 +127,7 @@ class MotionCertifier:
         poses = np.ascontiguousarray(poses_at(time), dtype=np.float64)
         if poses.shape != (len(self), 3, 4) and not (len(self) == 1 and poses.shape == (3, 4)):
             raise InvalidOption(
-                f"poses_at({time:g}) has the shape {poses.shape}, but must have ({len(self)}, 3, 4): a pose of each body"
+                f"poses_at({time:g}) has the shape {poses.shape}, but must have ({len(self)}, 3, 4): one pose a body"
             )
         return poses.reshape(len(self), 3, 4)
 

@@ -59,7 +59,7 @@ TEST(FieldWarnings, ReportTrianglesThatFaceDifferentWaysEvenIfNodesAreInside) {
   const Field field = distance_field(box, grid(), {.sign = SignMode::winding});
   ASSERT_TRUE(std::any_of(field.distance.begin(), field.distance.end(), [](float d) { return d < 0; }));
   const std::string text = text_of(box, WarningCode::facing, {.sign = SignMode::winding});
-  EXPECT_EQ(text.rfind("3 edges lie between triangles that face different ways, so signs near them", 0), 0U) << text;
+  EXPECT_EQ(text.rfind("3 edges lie between triangles that face different ways, so signs near these", 0), 0U) << text;
 }
 
 TEST(SignWarnings, NeedNoGrid) {
