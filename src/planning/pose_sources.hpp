@@ -12,7 +12,7 @@
 namespace blum::detail {
 
 /// Rigid motions, one for each body.
-class RigidMotions : public PosesOverTime {
+class RigidMotions final : public PosesOverTime {
  public:
   /// @throws InvalidOption if the number of motions is not that of the bodies.
   RigidMotions(const Bodies& data, std::span<const RigidMotion> motions);
@@ -33,7 +33,7 @@ class RigidMotions : public PosesOverTime {
 };
 
 /// Motions that the caller computes.
-class GivenMotion : public PosesOverTime {
+class GivenMotion final : public PosesOverTime {
  public:
   /// @throws InvalidOption if a bound is missing, negative or not finite, or if the pose of a body at the start is
   /// invalid.

@@ -12,7 +12,7 @@ namespace blum::detail {
 namespace {
 
 /// Returns the mesh if it is valid.
-const MeshView& checked(const MeshView& mesh, const std::string& name) {
+MeshView checked(const MeshView& mesh, const std::string& name) {
   constexpr double furthest = 1e70, smallest = 1e-140;
   validate(mesh);
   double largest = 0;
