@@ -34,8 +34,8 @@ struct PathFile {
   std::optional<double> clearance = {};         ///< Stated clearance of the whole path, mesh units.
   std::vector<PathInterval> intervals = {};     ///< The stated proof. Empty in a file of another program.
 
-  /// Returns the path. @throws InvalidOption for numbers that are not a pose.
-  /// @param centres  of bodies if the file states none.
+  /// Returns the path.
+  /// @param default_centres  centres of the bodies if the file states none. @throws InvalidOption for wrong poses.
   [[nodiscard]] MotionPath path(const std::vector<Vec3d>& default_centres) const;
 };
 
