@@ -703,7 +703,7 @@ class _Alone(AbstractContextManager[None]):
     def __enter__(self) -> None:
         scene, own = self._scene, threading.get_ident()
         if scene._owner == own:
-            raise RuntimeError("a running call uses this scene; progress callbacks and signal handlers must not")
+            raise RuntimeError("this scene is in use by a running call: callbacks and signal handlers must not use it")
         scene._busy.acquire()
         scene._owner = own
 

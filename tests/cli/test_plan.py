@@ -103,7 +103,7 @@ def test_verify_judges_paths_of_other_programs(folder):
     _, err = run("verify", folder / "other.csv", *meshes(folder), "--weld", status=2)
     assert "--weld" in err
     _, err = run("verify", folder / "plate.ply", status=2)
-    assert "AXIS is missing" in err
+    assert "AXIS is required" in err
 
 
 def test_no_path_is_an_exit_status_of_its_own(folder):

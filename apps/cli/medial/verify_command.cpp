@@ -186,7 +186,7 @@ void run_path_check(const Arguments& a) {
 void run(const Arguments& a) {
   const fs::path path = a.input;
   if (is_path_file(path)) return run_path_check(a);
-  if (a.axes.empty()) throw UsageError("AXIS is missing: give the medial axes to check after the solid");
+  if (a.axes.empty()) throw UsageError("AXIS is required: give the medial axes to check after the solid");
   refuse_given({{a.clearance.has_value(), "--clearance"}}, path, "a solid", "paths");
   const std::vector<fs::path> axes(a.axes.begin(), a.axes.end());
   for (const fs::path& axis : axes)
