@@ -75,12 +75,11 @@ class Planner {
     check_problem();
     for (std::size_t body = 0; body < bodies(); ++body) {
       const Vec3d centre = certifier_.centre(body);
-      double size = 0, diagonal = 0;
+      double size = 0;
       for (const Vec3d& p : problem.bodies[body].vertices) size = std::max(size, length(p - centre));
-      diagonal = 2 * size;
       centres_.push_back(centre);
       sizes_.push_back(size);
-      delta_ = std::min(delta_, 1e-4 * diagonal);
+      delta_ = std::min(delta_, 2e-4 * size);
     }
     if (options.delta) delta_ = *options.delta;
     check_pose(problem.start, "start");

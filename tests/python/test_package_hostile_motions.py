@@ -10,27 +10,11 @@ from scipy.spatial.transform import Rotation
 
 I3 = np.eye(3)
 TRI = np.array([[0, 1, 2]])
-BOX = np.array(
-    [
-        [0, 2, 1],
-        [0, 3, 2],
-        [4, 5, 6],
-        [4, 6, 7],
-        [0, 1, 5],
-        [0, 5, 4],
-        [1, 2, 6],
-        [1, 6, 5],
-        [2, 3, 7],
-        [2, 7, 6],
-        [3, 0, 4],
-        [3, 4, 7],
-    ]
-)
 
 
 def box(size=(1, 1, 1), centre=(0, 0, 0)):
-    v = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
-    return (v - 0.5) * size + centre, BOX
+    unit = blum.generate("box")
+    return unit.vertices * size + centre, unit.triangles
 
 
 def sphere(n, r):

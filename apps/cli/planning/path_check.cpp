@@ -20,10 +20,6 @@ struct PathMeshes {
   std::vector<std::string> mismatches;  ///< files that differ from those that the path file states
 };
 
-TriangleMesh mesh_of(const fs::path& file) {
-  return read_mesh(file);
-}
-
 /// Reads a mesh that a path file names, and compares it with the stated size and checksum.
 TriangleMesh stated_mesh(const fs::path& path, const PathMesh& stated, std::vector<std::string>& mismatches) {
   const fs::path folder = path.parent_path();
@@ -34,7 +30,7 @@ TriangleMesh stated_mesh(const fs::path& path, const PathMesh& stated, std::vect
                          " bytes and the checksum " + found.crc32 + ", but the path file states " +
                          std::to_string(stated.bytes) + " and " + stated.crc32);
   }
-  return mesh_of(file);
+  return read_mesh(file);
 }
 
 PathMeshes meshes_of(const PathCheck& check, const PathFile& file) {
@@ -54,7 +50,7 @@ PathMeshes meshes_of(const PathCheck& check, const PathFile& file) {
                      std::to_string(check.meshes.size()) + " meshes are given; give the bodies, then the obstacles");
   }
   for (std::size_t k = 0; k < check.meshes.size(); ++k) {
-    (k < bodies ? out.bodies : out.obstacles).push_back(mesh_of(check.meshes[k]));
+    (k < bodies ? out.bodies : out.obstacles).push_back(read_mesh(check.meshes[k]));
   }
   return out;
 }

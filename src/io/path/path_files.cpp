@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/path_io.hpp"
 #include "io/bytes/byte_source.hpp"
@@ -30,13 +31,6 @@ constexpr int format_version = 1;
 
 // Writing. Numbers have as many digits as are needed to read the same doubles again.
 
-std::string text_of(double value) {
-  std::array<char, 32> digits{};
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  static_cast<void>(error);
-  return {digits.data(), end};
-}
-
 template <class Range, class Text>
 std::string list_of(const Range& items, const Text& text, std::string_view separator = ", ") {
   std::string out = "[";
@@ -53,7 +47,7 @@ std::string text_of(const PathMesh& mesh) {
 }
 
 std::string text_of(const PathFile& file) {
-  const auto number = [](double value) { return text_of(value); };
+  const auto number = [](double value) { return exact_text(value); };
   const auto mesh = [](const PathMesh& one) { return text_of(one); };
   const auto pose = [&](const PoseNumbers& one) { return list_of(one, number); };
   std::string out =
@@ -62,11 +56,11 @@ std::string text_of(const PathFile& file) {
       ",\n\"obstacles\": " + list_of(file.obstacles, mesh, ",\n  ") + ",\n\"centres\": " +
       list_of(file.centres, [&](const Vec3d& c) { return list_of(std::array{c.x, c.y, c.z}, number); }) +
       ",\n\"poses\": " + list_of(file.poses, [&](const auto& poses) { return list_of(poses, pose); }, ",\n  ");
-  if (file.clearance) out += ",\n\"clearance\": " + text_of(*file.clearance);
+  if (file.clearance) out += ",\n\"clearance\": " + exact_text(*file.clearance);
   if (!file.intervals.empty()) {
     const auto interval = [&](const PathInterval& one) {
-      return "[" + std::to_string(one.edge) + ", " + text_of(one.from) + ", " + text_of(one.to) + ", " +
-             text_of(one.clearance) + "]";
+      return "[" + std::to_string(one.edge) + ", " + exact_text(one.from) + ", " + exact_text(one.to) + ", " +
+             exact_text(one.clearance) + "]";
     };
     out += ",\n\"intervals\": " + list_of(file.intervals, interval, ",\n  ");
   }
@@ -145,7 +139,7 @@ class JsonPath {
   PathInterval interval_of(const json& interval) const {
     const auto [edge, from, to, clearance] = numbers<4>(interval, "intervals");
     if (!(edge >= 0 && edge < 0x1p32 && std::floor(edge) == edge)) {
-      fail("\"intervals\" contains the motion " + text_of(edge) + ", which is not a number of a motion");
+      fail("\"intervals\" contains the motion " + exact_text(edge) + ", which is not a number of a motion");
     }
     return {.edge = static_cast<std::uint32_t>(edge), .from = from, .to = to, .clearance = clearance};
   }

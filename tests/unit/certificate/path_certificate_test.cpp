@@ -15,15 +15,12 @@
 #include "blum/planning/certified_path.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/random_transform.hpp"
+#include "unit/planning/support.hpp"
 
 namespace blum {
 namespace {
 
-TriangleMesh box(const Vec3d& size, const Vec3d& centre = {}) {
-  TriangleMesh out = make_box({.size = size});
-  for (Vec3d& v : out.vertices) v += centre;
-  return out;
-}
+using test::box;
 
 /// Meshes of a scene, and a path with the proof that the planning layer gives.
 struct Scene {
